@@ -1,4 +1,4 @@
-"""The fixtures of the command's tests; but compiled programs are those that the user has."""
+"""The fixtures of the command's tests, but with the user's environment and compiled programs."""
 
 import importlib.util
 import os

@@ -1,5 +1,5 @@
-/* To be loaded before a program: its FAULT_PREAD-th reading by place fails as a broken disk's. */
-#undef _FILE_OFFSET_BITS /* which would make one of the two calls */
+/* Makes call number FAULT_PREAD of pread fail as on a broken disk; loaded before a program. */
+#undef _FILE_OFFSET_BITS /* the macro would turn pread into pread64 */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -2,7 +2,7 @@
 
 #include <pthread.h>
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of all below */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* guards all shared variables */
 static enum fault_kind armed_kind;
 static bool is_armed, does_stay;
 static long due, calls, blocks, objects;

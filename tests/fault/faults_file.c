@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
+#define MARK_ERROR 0x20 /* glibc's _IO_ERR_SEEN, since the wrapped call is glibc's */
 
 WRAPPED(int, open64, const char *path, int flags, ...);
 WRAPPED(ssize_t, write, int descriptor, const void *bytes, size_t count);
@@ -21,7 +21,7 @@ WRAPPED(FILE *, fopen64, const char *path, const char *mode);
 WRAPPED(size_t, fwrite, const void *bytes, size_t size, size_t count, FILE *file);
 WRAPPED(int, fclose, FILE *file);
 
-/* With errno set. usual: what such a call says on a full disk. */
+/* Returns whether the call fails, with errno set. usual: the errno if fault_arm chose none. */
 static bool fails(int usual)
 {
     int error;
@@ -36,7 +36,7 @@ static bool is_for_writing(int descriptor)
     return (fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
 }
 
-/* Devices stay as they are. */
+/* True for a device's path. Calls on devices never fail. */
 static bool is_device(const char *path)
 {
     return strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
@@ -87,7 +87,7 @@ FILE *__wrap_fopen64(const char *path, const char *mode)
     return __real_fopen64(path, mode);
 }
 
-/* The stream remembers its failure, as a real one does, for those who ask only at the end. */
+/* Marks the stream as failed, as a real failure does, for callers that ask only at the end. */
 size_t __wrap_fwrite(const void *bytes, size_t size, size_t count, FILE *file)
 {
     if (!fails(ENOSPC))

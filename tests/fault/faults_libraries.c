@@ -1,7 +1,7 @@
-/* The process's own allocators in glibc's place, which the libraries under sonject call: libyaml
- * and the C library, and those that test_calls.c leaves out. Not counted are what sonject allocates
- * itself (faults_memory.c fails that), what the OpenCL driver does, whose compiler ends the process
- * when it gets no memory, and what other threads do, since nobody could tell what these do next. */
+/* The process's own allocators in place of glibc's. The libraries under sonject call them: libyaml,
+ * the C library, and libraries that test_calls.c leaves out. Three kinds of allocations are not
+ * counted: sonject's own, which faults_memory.c fails; the OpenCL driver's, whose compiler ends the
+ * process when it gets no memory; other threads', since nobody could tell what these do next. */
 #define _GNU_SOURCE
 #include "faults.h"
 

@@ -5,7 +5,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
-/* A call that answers with its error. */
+/* Wraps a call that returns its error. */
 #define ANSWERS(name, parameters, arguments)                                                       \
     cl_int __real_##name parameters;                                                               \
     cl_int __wrap_##name parameters;                                                               \
@@ -20,7 +20,7 @@
         return done;                                                                               \
     }
 
-/* A call that makes an object; its last parameter is `cl_int *answer`. */
+/* Wraps a call that makes an object. The last parameter of the call is `cl_int *answer`. */
 #define MAKES(type, name, parameters, arguments)                                                   \
     type __real_##name parameters;                                                                 \
     type __wrap_##name parameters;                                                                 \
@@ -39,7 +39,7 @@
         return object;                                                                             \
     }
 
-/* A call that gives an object up; it never fails. */
+/* Wraps a call that gives an object up, which never fails. */
 #define RELEASES(name, type)                                                                       \
     cl_int __real_##name(type object);                                                             \
     cl_int __wrap_##name(type object);                                                             \

@@ -1,8 +1,8 @@
-/* The n-th call fails, of those that the library makes for memory, of OpenCL, or of files, or that
- * libraries under it make for memory: a status and a message, nothing held, no file that is not
- * whole, and the next call works.
+/* Tests that the library survives the failure of its n-th call for memory, of OpenCL or of files,
+ * or of the n-th call for memory by the libraries under it. A status and a message come back,
+ * nothing is held, no file is left incomplete, and the next call works.
  *
- * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
+ * SONJECT_FAULT_POINTS: the number of n to try of each piece of work (0: all). KIND: the calls. */
 #include "claims.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -15,7 +15,7 @@
 #define POINTS 12
 #endif
 
-/* What an OpenCL call may say; a device that is lost stays so. */
+/* Errors that an OpenCL call may return. A device that is lost stays lost. */
 static const int opencl_errors[] = {CL_OUT_OF_RESOURCES, CL_DEVICE_NOT_AVAILABLE,
                                     CL_OUT_OF_HOST_MEMORY, CL_MEM_OBJECT_ALLOCATION_FAILURE};
 
@@ -32,7 +32,7 @@ static bool is_right_status(sonject_status status)
         return status == SONJECT_ERROR_MEMORY;
     case FAULT_OPENCL:
         return status == SONJECT_ERROR_DEVICE || status == SONJECT_ERROR_MEMORY;
-    default: /* where an input cannot be opened or read, INPUT */
+    default: /* INPUT where an input cannot be opened or read */
         return status == SONJECT_ERROR_STORAGE || status == SONJECT_ERROR_INPUT ||
                (KIND == FAULT_LIBRARIES && status == SONJECT_ERROR_MEMORY);
     }
@@ -48,7 +48,7 @@ static void expect_nothing_held(const char *name, long n, long blocks)
 
 static struct work work;
 
-/* Returns whether the work failed; a call may be one that the library can do without. */
+/* Returns whether the work failed. The library can do without some calls. */
 static bool fail_at(const struct work_piece *piece, long n)
 {
     const char *name = piece->name;
@@ -58,7 +58,7 @@ static bool fail_at(const struct work_piece *piece, long n)
     fault_arm(KIND, n, stays, error);
     const sonject_status status = work_do(&work, piece);
     const long calls = fault_disarm();
-    /* a device that fails may be asked in another order; then there is nothing to be seen */
+    /* calls may come in another order, and fewer than n of them: then none failed */
     if (calls < n && status != SONJECT_OK)
         fail_msg("%s failed of itself: %s", name, work.message);
     if (status != SONJECT_OK && !is_right_status(status))
@@ -78,8 +78,8 @@ static void expect_done(const struct work_piece *piece)
     expect_nothing_held(piece->name, 0, blocks);
 }
 
-/* Fails calls spread over all that the work makes, the next call of which must work each time that
- * a third of them is done. */
+/* Fails calls spread over all calls of the work. Undisturbed work must succeed each time that a
+ * third of them is done. */
 static void test_piece(void **state)
 {
     const struct work_piece *piece = *state;
@@ -95,8 +95,8 @@ static void test_piece(void **state)
     const long points = wanted > 0 && wanted < calls ? wanted : calls;
     long failed = 0;
     for (long i = 0; i < points; i++) {
-        /* one of each of as many runs of calls, another in each so that none is left out for ever
-         */
+        /* divides the calls into runs, and fails one in each at varying places, so that none is
+         * left out for ever */
         const long first = i * calls / points;
         const long length = (i + 1) * calls / points - first;
         failed += fail_at(piece, 1 + first + (7 * i) % length);
@@ -112,7 +112,7 @@ static void test_piece(void **state)
 
 static void test_discovery_short_of_memory_says_so(void **state)
 {
-    for (long n = 1; n <= 2; n++) { /* platforms, devices */
+    for (long n = 1; n <= 2; n++) { /* 1: platforms, 2: devices */
         fault_arm(FAULT_OPENCL, n, false, CL_OUT_OF_HOST_MEMORY);
         const sonject_status status = work_do(&work, &work_inject);
         (void)fault_disarm();
@@ -121,8 +121,6 @@ static void test_discovery_short_of_memory_says_so(void **state)
     }
 }
 
-/* Without memory HDF5 1.10 loses what all its later calls need, and libtiff 4.5 ends the process:
- * what uses them is left out where libraries lack it. */
 #define PIECE(of)                                                                                  \
     {                                                                                              \
 #of, test_piece, NULL, NULL, (void *)(uintptr_t)&of                                        \
@@ -134,10 +132,12 @@ int main(void)
         cmocka_unit_test(test_discovery_short_of_memory_says_so)};
     const struct CMUnitTest with_device[] = {PIECE(work_inject), PIECE(work_run), PIECE(work_trace),
                                              PIECE(work_form)};
-    /* the OpenCL calls of some are those of the others, and the last ones have none */
+    /* no OpenCL faults: their OpenCL calls are those of with_device, or none */
     const struct CMUnitTest others[] = {
         PIECE(work_shards),  PIECE(work_campaign),  PIECE(work_read),  PIECE(work_check),
         PIECE(work_measure), PIECE(work_quicklook), PIECE(work_seabed)};
+    /* Without memory HDF5 1.10 loses state that all its later calls need, and libtiff 4.5 ends the
+     * process. Work that uses them is left out here. */
     const struct CMUnitTest of_libraries[] = {PIECE(work_inject), PIECE(work_read),
                                               PIECE(work_check), PIECE(work_campaign),
                                               PIECE(work_quicklook)};

@@ -1,7 +1,7 @@
-/* The first use of a device in a process, by several threads, before and after a fork; what
- * contexts hold; and two threads that go on, each with a context of its own, with the same images
- * as one. This process makes no call of the library, so that each of its children is the first to
- * use the driver. */
+/* Tests the first use of a device in a process, by several threads, and before and after a fork.
+ * Tests what contexts hold, and that two threads, each with a context of its own, make the images
+ * that one makes. This process makes no call of the library, so that each of its children is the
+ * first to use the driver. */
 #include "claims.h"
 
 #include <pthread.h>
@@ -13,15 +13,15 @@
 #define THREADS  4
 #define CONTEXTS 100
 #ifndef RUNS
-#define RUNS 8 /* processes; a slow checker may be compiled with fewer */
+#define RUNS 8 /* number of processes; a slow checker may be compiled with fewer */
 #endif
-#define SECONDS     300             /* after which a child that waits for ever is ended */
-#define IMAGES      (2 * RUNS + 10) /* of each of two threads */
+#define SECONDS     300             /* s, after which a child that hangs is ended */
+#define IMAGES      (2 * RUNS + 10) /* number of images of each of two threads */
 #define SIDE        24
 #define KINDS       3 /* different scenes, which a thread takes in turn */
 #define IMAGE_BYTES (SIDE * SIDE * sizeof(float))
 
-/* A child of this process, or one of its own: nonzero for failure, with a line that says why. */
+/* The work of a child of this process, or of a child's child. Returns nonzero for failure. */
 typedef int child_work(void);
 
 static int say(const char *what, const sonject_context *context)
@@ -42,7 +42,7 @@ static int exit_of(child_work *work)
     return child > 0 && waitpid(child, &status, 0) == child ? status : -1;
 }
 
-/* Of a sphere, whose glint is weak, or a cylinder, in different places. pixels may be NULL. */
+/* Injects a sphere, whose glint is weak, or a cylinder, elsewhere by kind. pixels may be NULL. */
 static sonject_status inject_kind(sonject_context *context, unsigned kind, float *pixels)
 {
     sonject_scene *scene = NULL;
@@ -115,7 +115,7 @@ TEST(test_threads_may_be_the_first_to_use_a_device)
 
 static sonject_context *parents;
 
-/* Refused, with the reason. */
+/* Returns 0 if the call was refused with the reason, else 1. */
 static int is_let_in(const char *what, sonject_context *context, sonject_status status)
 {
     return status != SONJECT_ERROR_DEVICE || !strstr(sonject_context_message(context), "forked")
@@ -128,7 +128,7 @@ static const sonject_context_params on_pocl = {.struct_size = sizeof on_pocl,
 static const sonject_context_params on_native = {.struct_size = sizeof on_native,
                                                  .device_name = "native"};
 
-/* OpenCL is no longer to be had, but the processor is. */
+/* Expects a child to be refused OpenCL, but not the native device. */
 static int expect_refusal(void)
 {
     size_t count = 0;
@@ -148,7 +148,7 @@ static int expect_refusal(void)
     return failures;
 }
 
-/* The parent may have used the device, or only listed it, and goes on with it. */
+/* Forks after the parent has used or only listed the device. The parent goes on with the device. */
 static int fork_after(sonject_status (*use)(sonject_context *context))
 {
     if (sonject_context_create(&on_pocl, &parents) != SONJECT_OK || use(parents) != SONJECT_OK)
@@ -189,7 +189,7 @@ static int inject_in_parents(void)
     return failed;
 }
 
-/* Threads of the parent's launches are not the child's. */
+/* Forks on the native device. A child does not have the threads of its parent's launches. */
 static int fork_native(void)
 {
     if (sonject_context_create(&on_native, &parents) != SONJECT_OK || inject(parents) != SONJECT_OK)
@@ -205,7 +205,7 @@ TEST(test_children_inject_on_native_as_their_parent_does)
     assert_int_equal(exit_of(fork_native), 0);
 }
 
-/* A context that was made but opened no device stands in nobody's way. */
+/* Forks after a context was made that opened no device, so that both processes may use one. */
 static int fork_before_injecting(void)
 {
     if (sonject_context_create(NULL, &parents) != SONJECT_OK)
@@ -219,7 +219,7 @@ TEST(test_parent_and_child_may_both_inject_where_none_did_before)
     assert_int_equal(exit_of(fork_before_injecting), 0);
 }
 
-/* Of this process, in pages that are in memory. */
+/* Returns the resident memory of this process, in pages. */
 static long pages(void)
 {
     long all, resident = 0;
@@ -259,7 +259,7 @@ TEST(test_a_hundred_contexts_hold_less_than_two)
 }
 
 struct worker {
-    float (*expected)[SIDE * SIDE]; /* of each kind */
+    float (*expected)[SIDE * SIDE]; /* image of each kind */
     unsigned first_kind;
     int failed;
 };

@@ -1,6 +1,6 @@
-/* The library in a process that is not its own: it prints nothing and changes nothing of it. What
- * the OpenCL driver does when it is first used is done before, on the host's own context, which the
- * library then works in. */
+/* Tests that the library prints nothing and changes nothing of a process that is not its own. The
+ * OpenCL driver makes changes when it is first used. The host therefore uses the driver first, in a
+ * context of its own, and the library then works on the same device. */
 #define _GNU_SOURCE
 
 #include "claims.h"
@@ -20,11 +20,11 @@
 #include "unit/temporary_folder.h"
 
 #define SIDE    32
-#define SIGNALS 65 /* numbers of Linux end before */
+#define SIGNALS 65 /* one more than the largest signal number of Linux */
 
 extern char **environ;
 
-/* Signals with what the host does with them, and what it blocks. */
+/* The state of a process that the library must leave alone, with all signals' actions. */
 struct process_state {
     char locale[256], folder[4096];
     size_t environment_count;
@@ -64,7 +64,7 @@ static void read_state(struct process_state *state)
     state->descriptors = count_entries("/proc/self/fd");
 }
 
-/* All but the files that are open. */
+/* Expects an earlier state in all but the number of open files. */
 static void expect_like(const struct process_state *before)
 {
     struct process_state now;
@@ -92,7 +92,7 @@ static void expect_unchanged(const struct process_state *before)
     expect_like(before);
 }
 
-/* A host with habits of its own. */
+/* Gives the host habits of its own. */
 static void live_differently(const char *folder)
 {
     if (!setlocale(LC_ALL, "de_DE.UTF-8") || strcmp(localeconv()->decimal_point, ",") != 0)
@@ -106,7 +106,7 @@ static void live_differently(const char *folder)
 struct opencl {
     cl_device_id device;
     cl_context context;
-    char name[128]; /* of the device */
+    char name[128]; /* name of the device */
 };
 
 /* Opens the first device and builds and runs a kernel on it. */
@@ -155,7 +155,7 @@ static sonject_scene *make_scene(sonject_context *context)
     return scene;
 }
 
-/* Whole runs, failures too. */
+/* Works with the library in whole runs, failures included. */
 static void work(const struct opencl *opencl, const char *folder)
 {
     char results[TEMPORARY_CAPACITY + 16];
@@ -181,7 +181,7 @@ static void work(const struct opencl *opencl, const char *folder)
     sonject_context_release(&context);
 }
 
-/* Lets standard output and error go to a file; returns where they went before. */
+/* Sends standard output or error to a file. Returns a descriptor of where it went before. */
 static int capture(int descriptor, int file)
 {
     const int kept = dup(descriptor);
@@ -190,7 +190,7 @@ static int capture(int descriptor, int file)
     return kept;
 }
 
-/* Of what the run says of its objects, numbers as text among it. */
+/* Returns a digest of the run's truth.json, which holds numbers as text. */
 static uint64_t digest_of_truth(const char *folder)
 {
     char path[TEMPORARY_CAPACITY + 32];
@@ -217,7 +217,7 @@ IN_FOLDER(test_a_host_stays_as_it_was)
     struct stat said;
     struct opencl opencl = use_opencl();
     read_state(&before);
-    work(&opencl, folder->path); /* libraries may keep files open from then on */
+    work(&opencl, folder->path); /* libraries may keep files open from here on */
     expect_like(&before);
     const uint64_t truth = digest_of_truth(folder->path);
     remove_results(folder->path);
@@ -232,7 +232,7 @@ IN_FOLDER(test_a_host_stays_as_it_was)
     expect_unchanged(&before);
     assert_true(digest_of_truth(folder->path) == truth);
     remove_results(folder->path);
-    (void)fesetround(FE_UPWARD); /* which changes numbers */
+    (void)fesetround(FE_UPWARD); /* changes the results */
     read_state(&before);
     work(&opencl, folder->path);
     expect_unchanged(&before);

@@ -1,5 +1,5 @@
-/* Threads with contexts of their own run kernels one at a time where PoCL runs them: see
- * lib/device/launch.c. The linker sends the library's calls through those below. */
+/* Tests that threads with contexts of their own run kernels one at a time on PoCL: see
+ * lib/device/opencl/launch.c. The linker sends the library's calls through the wrappers below. */
 #include "claims.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -9,10 +9,10 @@
 #include "form/form.h"
 
 #define THREADS  4
-#define LAUNCHES 100 /* of each */
+#define LAUNCHES 100 /* launches of each thread */
 #define SIDE     64
 
-static int running, most; /* launches; atomic */
+static int running, most; /* numbers of launches, now and at most; atomic */
 
 cl_int __real_clEnqueueNDRangeKernel(cl_command_queue, cl_kernel, cl_uint, const size_t *,
                                      const size_t *, const size_t *, cl_uint, const cl_event *,

@@ -1,4 +1,4 @@
-"""The command in a bad world: killed at any moment, twice at once, without files or rights."""
+"""Tests the command in a bad world: killed at any moment, twice at once, without files or rights."""
 
 import hashlib
 import os
@@ -12,20 +12,20 @@ import pytest
 
 from command_fixtures import COMMAND, assert_refused, make_swath, write_scene
 
-# Killed runs; each takes less than a whole one.
+# The number of runs that are killed. Each takes less time than a whole one.
 KILLS = int(os.environ.get("SONJECT_KILLS", "8"))
 
-# Before the command: root may write anywhere unless it gives that up.
+# A prefix of the command, since root may write anywhere unless it gives these rights up.
 WITHOUT_RIGHTS = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all"]
 
 
 def names(folder):
-    """Of what is in the folder, none if it is not there."""
+    """Returns the names of a folder's entries, none if there is no folder."""
     return {path.name for path in folder.iterdir()} if folder.is_dir() else set()
 
 
 def digests(folder):
-    """Of each file by its name; run.json tells times, so that only its presence counts."""
+    """Returns each file's digest by its name. run.json tells times, so only its presence counts."""
     return {
         name: "" if name == "run.json" else hashlib.sha256((folder / name).read_bytes()).hexdigest()
         for name in names(folder) if (folder / name).is_file()
@@ -33,13 +33,13 @@ def digests(folder):
 
 
 def finals(folder):
-    """What is there under final names."""
+    """Returns the digests of the files under final names."""
     return {name: digest for name, digest in digests(folder).items() if ".part" not in name}
 
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory, environment):
-    """The files that a run leaves, and how long it takes with full caches."""
+    """The files that a run leaves, and its duration with full caches, s."""
     folder = tmp_path_factory.mktemp("reference")
     scene = write_scene(folder, make_swath())
     for name in ("first", "reference"):
@@ -80,7 +80,7 @@ def test_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
 
 
 def test_a_merge_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
-    """With none, one, two ... results written: before all are, the parts are there."""
+    """Kills merges after none, one, two ... results. Until all are written, the parts stay."""
     expected, _ = reference
     for part in ("1/2", "2/2"):
         assert sonject("run", scene, "-o", "parts", "--shard", part).returncode == 0
@@ -88,7 +88,7 @@ def test_a_merge_killed_at_any_moment(reference, scene, tmp_path, environment, s
         folder = tmp_path / f"merged{number}"
         shutil.copytree(tmp_path / "parts", folder)
         process = start(["merge", folder], tmp_path, environment)
-        # by names alone: at work, the command renames files at any moment
+        # compares names alone, since the working command renames files at any moment
         while len(names(folder) & set(expected)) < number and process.poll() is None:
             time.sleep(1e-3)
         process.kill()
@@ -111,7 +111,7 @@ def test_two_at_once_in_one_folder(reference, scene, tmp_path, environment):
 
 
 def test_few_open_files(reference, scene, tmp_path, sonject):
-    """Either all is there or one line says what is not."""
+    """Expects all files, or one line that says what is missing."""
     expected, _ = reference
     codes = set()
     for number in (4, 6, 8, 12, 1024):  # drivers of GPUs need hundreds
@@ -131,14 +131,14 @@ def test_few_open_files(reference, scene, tmp_path, sonject):
 
 @pytest.mark.parametrize("megabytes", [100, 200])
 def test_little_memory_is_told_as_such(scene, sonject, megabytes):
-    """And not as a driver that ought to be installed."""
+    """The message must not tell users to install a driver."""
     def try_with_little(*arguments):
         limit = (megabytes << 20, megabytes << 20)
         return sonject(*arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
 
     run = ["run", scene, "-o", "result"]
     assert_refused(try_with_little(*run, "--device", "pthread"), 5, "too little memory", "ulimit -v")
-    answer = try_with_little(*run)  # each of native's threads takes of it
+    answer = try_with_little(*run)  # each thread of native takes some memory
     if answer.returncode != 0:
         assert_refused(answer, 5, "memory")
     devices = try_with_little("devices")
@@ -147,7 +147,7 @@ def test_little_memory_is_told_as_such(scene, sonject, megabytes):
 
 
 def test_without_opencl_there_is_native(scene, sonject, tmp_path):
-    (tmp_path / "libOpenCL.so.1").write_bytes(b"")  # which is found first
+    (tmp_path / "libOpenCL.so.1").write_bytes(b"")  # found before the real one
     without = {"changes": {"LD_LIBRARY_PATH": str(tmp_path)}}
     devices = sonject("devices", **without)
     assert (devices.returncode, devices.stderr) == (0, "")

@@ -1,5 +1,6 @@
-/* A disk that cannot be read is no damaged file: whichever of a reader's calls fails, the status is
- * STORAGE, and the message has the name of the file (or of the copy) and the system's words. */
+/* Tests that an unreadable disk is not taken for a damaged file. Whichever of a reader's calls
+ * fails, the status is STORAGE. The message names the file (or the copy) and has the system's
+ * words. */
 #include "claims.h"
 
 #include <errno.h>
@@ -11,14 +12,14 @@
 #include "unit/temporary_folder.h"
 
 #define SIDE       16
-#define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
+#define MARK_ERROR 0x20 /* glibc's _IO_ERR_SEEN, since the wrapped call is glibc's */
 
 WRAPPED(size_t, fread, void *bytes, size_t size, size_t count, FILE *file);
 WRAPPED(ssize_t, read, int descriptor, void *bytes, size_t count);
 
-static long calls, due; /* 0: none fails */
+static long calls, due; /* number of calls, and of the one that fails; 0: none fails */
 
-/* Not of what gives random names to files. */
+/* Returns whether a call fails. Only regular files count, not the source of random file names. */
 static bool is_due(int descriptor)
 {
     struct stat facts;

@@ -44,7 +44,7 @@ static uint64_t add_to_digest(uint64_t digest, const void *bytes, size_t count)
     return digest;
 }
 
-/* Speckle of unit mean square, by a generator of remainders. */
+/* Fills the image with random amplitudes by a linear congruential generator. */
 static void fill_pixels(float pixels[ROWS * COLUMNS])
 {
     uint32_t state = 1;
@@ -144,7 +144,7 @@ static sonject_status read_scene(struct work *work, sonject_context *context, so
     return status;
 }
 
-/* Into grey levels, which amplitudes become first. */
+/* Injects into grey levels, made from amplitudes first. */
 static sonject_status inject(struct work *work, sonject_context *context, sonject_scene *scene)
 {
     static const char transfer[] = "{kind: gamma, parameter: 2}";
@@ -266,7 +266,7 @@ const struct work_piece work_read = {"read", read_scene, true},
                         work_shards = {"shards", share_out, true},
                         work_campaign = {"campaign", make_campaign, false};
 
-/* Files that tell times. */
+/* True for files that tell times. */
 static bool differs_each_time(const char *name)
 {
     return strcmp(name, "run.json") == 0 || strcmp(name, "times.json") == 0;
@@ -279,7 +279,7 @@ static uint64_t digest_of_file(const struct work *work, const char *name)
     snprintf(path, sizeof path, "%s/%s", work->results, name);
     unsigned char *bytes = bytes_of_file(path, &count);
     uint64_t digest = add_to_digest(1, bytes, count);
-    if (differs_each_time(name)) { /* only whether it is whole */
+    if (differs_each_time(name)) { /* checks only that the file is whole */
         json_t *document = json_loadb((const char *)bytes, count, 0, NULL);
         if (!document)
             fail_msg("%s is not whole", name);
@@ -290,7 +290,7 @@ static uint64_t digest_of_file(const struct work *work, const char *name)
     return digest;
 }
 
-/* The files below a folder of the results, "" or "name/". */
+/* Lists the files below a folder of the results. below: "" or "name/". */
 static void list_below(const struct work *work, const char *below,
                        struct work_file files[WORK_FILES], size_t *count)
 {
@@ -310,7 +310,7 @@ static void list_below(const struct work *work, const char *below,
         if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode)) {
             strcat(name, "/");
             list_below(work, name, files, count);
-        } else if (!strstr(name, ".sums")) { /* what was traced may stay */
+        } else if (!strstr(name, ".sums")) { /* checkpoints of what was traced may stay */
             if (*count == WORK_FILES || strlen(name) >= sizeof files->name)
                 fail_msg("too many files, or too long a name: %s", name);
             strcpy(files[*count].name, name);

@@ -1,6 +1,6 @@
-"""First inputs of the fuzzers, small and made here: make(kind, folder, source) fills a folder, and
-words(kind, source) lists what a mutation may put in. Some are files that a reader must refuse, where
-a fuzzer would take long to think of them."""
+"""The fuzzers' first inputs, small and made here. make(kind, folder, source) fills a folder, and
+words(kind, source) lists words that a mutation may put in. Some files are ones that a reader must
+refuse and that a fuzzer would take long to think of."""
 
 import json
 import re
@@ -44,7 +44,7 @@ def recordings(source):
     for row in range(3):
         one += writer.ping([(0, samples[row].astype("u1"))], number=row)
     liar = bytearray(writer.file_header([writer.PORT]) + writer.ping([(0, samples[0])]))
-    struct.pack_into("<I", liar, 1024 + 256 + 42, 1000)  # samples of a ping that holds 8
+    struct.pack_into("<I", liar, 1024 + 256 + 42, 1000)  # claims 1000 samples in a ping of 8
     return {"both": both, "port": one, "liar": bytes(liar), "degrees": writer.xtf_bytes(samples, samples, units=3),
             "empty": writer.file_header([writer.PORT])}
 
@@ -56,7 +56,7 @@ def jsf_recordings(source):
     samples = numpy.arange(24, dtype="<u2").reshape(3, 8)
     pairs = numpy.arange(48, dtype="<i2").reshape(3, 8, 2)
     liar = bytearray(writer.jsf_ping(samples[0], 0))
-    struct.pack_into("<H", liar, 16 + 114, 1000)  # samples of a ping that holds 8
+    struct.pack_into("<H", liar, 16 + 114, 1000)  # claims 1000 samples in a ping of 8
     return {"both": writer.jsf_bytes(samples, samples + 1, heading=5.0), "pairs": writer.jsf_bytes(pairs, pairs),
             "weights": writer.jsf_bytes(samples, samples, subsystems=(20, 21), weights=(0, 3, -2)),
             "liar": bytes(liar), "empty": writer.jsf_bytes(samples, samples, empty=(0, 2), units=2)}
@@ -85,7 +85,7 @@ def _mat_element(kind, data):
 
 
 def mat_array(name, kind, numbers, imaginary=None, kept=None):
-    """kind: MATLAB's class; the type of the numbers goes with it. kept: bytes of the array."""
+    """Returns an array. kind: MATLAB's class, which gives the numbers' type. kept: bytes kept."""
     stored = {6: (9, "<f8"), 7: (7, "<f4"), 9: (2, "u1"), 10: (3, "<i2"), 11: (4, "<u2")}[kind]
     flags = struct.pack("<II", kind | (0x800 if imaginary is not None else 0), 0)
     body = _mat_element(6, flags) + _mat_element(5, struct.pack("<ii", *numbers.shape))
@@ -165,7 +165,7 @@ def tables(_):
 
 
 def labels(_):
-    """Of an image of 2 rows and 3 columns."""
+    """Returns labels of an image of 2 rows and 3 columns."""
     coco = {"images": [{"id": 1, "file_name": "a.npy", "width": 3, "height": 2}],
             "categories": [{"id": 1, "name": "highlight"}, {"id": 2, "name": "shadow"}],
             "annotations": [{"image_id": 1, "category_id": 1, "bbox": [0, 0, 1, 2]},
@@ -195,7 +195,7 @@ def make(kind, folder, source):
 
 
 def words(kind, source):
-    """The words of the corpus, for a dictionary; none where bytes are no text."""
+    """Returns the corpus's words for a dictionary, none where the bytes are no text."""
     if kind not in TEXTS:
         return []
     contents = b"\n".join(MAKERS[kind](source).values())

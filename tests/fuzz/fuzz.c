@@ -1,5 +1,5 @@
-/* The fuzzers. Each gives a reader whatever bytes libFuzzer thinks of; the reader must take them or
- * say why not, and hold nothing after a failure. KIND: the name of one. */
+/* The fuzzers. Each gives a reader the bytes that libFuzzer thinks of. The reader must take them or
+ * say why not, and hold nothing after a failure. KIND: the fuzzer to run. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 #include "schema/tables.h"
 #include "swath/swath_format.h"
 
-/* More than that and it is not read: compressed files may hold a thousand times their size. */
+/* The largest image that is read, bytes. Compressed files may hold a thousand times their size. */
 #define BYTES_READ_MAX ((size_t)1 << 24)
 
 struct fuzzer {
@@ -26,7 +26,7 @@ struct fuzzer {
     sonject_status (*read_mesh)(struct mesh_soup *soup, const char *bytes, size_t count);
 };
 
-/* libFuzzer's entry: 0. */
+/* libFuzzer's entry. Returns 0. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static void fail(const char *what, const char *detail)
@@ -35,7 +35,7 @@ static void fail(const char *what, const char *detail)
     abort();
 }
 
-/* Writes the file, which is not flushed to disk. */
+/* Writes a file without flushing it to disk. */
 static void put_file(const char *path, const uint8_t *bytes, size_t count)
 {
     FILE *file = fopen(path, "wb");
@@ -43,7 +43,7 @@ static void put_file(const char *path, const uint8_t *bytes, size_t count)
         fail("cannot write", path);
 }
 
-/* A copy with one 0 byte beyond it, of just that size, so that reading on is found; for free(). */
+/* Returns a copy of just that size plus one 0 byte, so that reading on is found. Caller frees. */
 static char *text_of(const uint8_t *bytes, size_t count)
 {
     char *text = malloc(count + 1);
@@ -55,7 +55,8 @@ static char *text_of(const uint8_t *bytes, size_t count)
     return text;
 }
 
-/* OK, or what bad input may have with one line of message, or a line for each mistake. */
+/* Aborts unless the status is OK, or one for bad input that has a message. The message has one
+ * line, or with has_lines one for each mistake. */
 static void expect(sonject_status status, const struct report *report, bool has_lines)
 {
     if (status == SONJECT_OK)
@@ -70,7 +71,7 @@ static void expect(sonject_status status, const struct report *report, bool has_
             fail("not one line", report->message);
 }
 
-/* Among the targets in ../targets. */
+/* Reads a scene whose targets are in ../targets. */
 static void read_scene(const char *text)
 {
     struct report report = {{0}, NULL, NULL};
@@ -89,7 +90,7 @@ static void fuzz_scene(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
     free(text);
 }
 
-/* Files of targets, as a scene reads them. */
+/* Reads a target's file, as a scene does. */
 static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
     static const char text[] =
@@ -102,7 +103,7 @@ static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
     read_scene(text);
 }
 
-/* The same file as a campaign's table of bodies. */
+/* Reads the same file as a campaign's table of bodies. */
 static void read_bodies(void)
 {
     struct report report = {{0}, NULL, NULL};
@@ -135,12 +136,12 @@ static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
         return;
     for (size_t column = 0; column < TABLE_COLUMNS_MAX; column++)
         for (size_t i = 0; table.values[column] && i < table.count; i++)
-            if (isnan(table.values[column][i])) /* infinite ones are for who reads it */
+            if (isnan(table.values[column][i])) /* infinite values are left to the table's users */
                 abort();
     number_table_clear(&table);
 }
 
-/* Labels of each format, of images that are a.npy. */
+/* Reads labels in each format, whose image is a.npy. */
 static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
     static const char *const files[][2] = {{"l.json", "l.json"},
@@ -168,7 +169,7 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
     }
 }
 
-/* From a file's bytes to a hierarchy. */
+/* Makes a hierarchy of a mesh file's bytes. */
 static void fuzz_mesh(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
     struct report report = {{0}, NULL, NULL};
@@ -196,8 +197,8 @@ static void fuzz_mesh(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t 
     free(text);
 }
 
-/* All lines that the file says to hold are in it. MATLAB's numbers, which may be compressed, are
- * no lines. */
+/* Checks that all lines that the file claims to hold are in it. MATLAB's numbers, which may be
+ * compressed, have no lines. */
 static void expect_inside(const struct swath_file *file, size_t bytes)
 {
     const struct sample_lines *lines = &file->lines;
@@ -228,7 +229,7 @@ static void read_all(struct swath_file *file)
     free(pixels);
 }
 
-/* Files that are read in this process: each choice of a channel or an array, its samples and its
+/* Reads image files in this process: each choice of a channel or an array, its samples and its
  * geometry. */
 static void fuzz_swath(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {

@@ -1,7 +1,7 @@
 """Runs a fuzzer on a corpus of its kind: run_fuzzer.py PROGRAM KIND SOURCE.
 
-SONJECT_FUZZ_SECONDS says for how long (60 or 20), SONJECT_FUZZ_FINDINGS where what it finds is
-kept (./findings). Runs begin with the same seed.
+SONJECT_FUZZ_SECONDS is the duration, s (60 or 20 by kind). SONJECT_FUZZ_FINDINGS is the folder for
+findings (./findings). All runs begin with the same seed.
 """
 
 import os
@@ -12,15 +12,15 @@ import tempfile
 
 import corpora
 
-# One triangle pyramid in place of a rock's hundreds.
+# A pyramid of four triangles in place of a rock's hundreds.
 ROCK = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
-# Readers of the files that scenes are made of.
+# Kinds that run for 60 s: the readers of the files that scenes are made of.
 MINUTE = {"scene", "xtf", "jsf", "npy", "stl", "obj", "ply"}
 LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "jsf": 4096}
 
 
 def fill(folder, kind, source):
-    """Returns the arguments that name its dictionary."""
+    """Fills the fuzzer's folder. Returns the arguments that name its dictionary."""
     corpora.make(kind, folder / "corpus", source)
     (folder / "scenes").mkdir()
     (folder / "targets").mkdir()
@@ -53,7 +53,7 @@ def main():
             f"-artifact_prefix={findings / kind}-", *dictionary, folder / "corpus",
         ]
         ended = subprocess.run(arguments, cwd=folder, stdin=subprocess.DEVNULL, check=False)
-        # libFuzzer tells what it found by 77, which Meson takes for a test that was skipped.
+        # libFuzzer exits with 77 after a finding, but Meson takes 77 for a skipped test.
         return 1 if ended.returncode else 0
 
 

@@ -3,7 +3,7 @@
 #include "claims.h"
 #include "random.h"
 
-/* Draws in turn. */
+/* Returns the next uniform random number in (0, 1). */
 static double draw(uint32_t *counter)
 {
     float u, v;
@@ -15,7 +15,7 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
                          uint32_t *counter)
 {
     object_init(object);
-    object->shape = number % SHAPE_PARTS; /* all but that */
+    object->shape = number % SHAPE_PARTS; /* every shape but SHAPE_PARTS */
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;
     object->height_m = 0.15 * object->length_m;
@@ -40,9 +40,9 @@ void clutter_strew(struct bench *bench, uint32_t count, double size)
         object.position_kind = SONJECT_POSITION_PIXELS;
         object.position_along = (double)bench->rows * (0.1 + 0.8 * draw(&counter));
         object.position_range = (double)bench->columns * (0.1 + 0.75 * draw(&counter));
-        if (i % 8 == 7) { /* the same again, to the bit */
+        if (i % 8 == 7) { /* a second object, equal to the bit */
             object = bench->scene.objects[i - 1];
-        } else if (i % 8 == 5) { /* one in the other */
+        } else if (i % 8 == 5) { /* one inside the other */
             const sonject_object_params *outer = &bench->scene.objects[i - 1];
             object.position_along = outer->position_along;
             object.position_range = outer->position_range;

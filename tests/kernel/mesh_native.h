@@ -10,7 +10,7 @@ enum mesh_question {
     MESH_SURFACE
 };
 
-/* Over rays [first, last), multiples of 8, of planes of `rays` elements. */
+/* Probe rays [first, last), multiples of 8. input, output: planes of `rays` elements. */
 void mesh_native_one(const struct mesh *mesh, enum mesh_question question, const float *input,
                      float *output, uint32_t rays, uint32_t first, uint32_t last);
 void mesh_native_wide(const struct mesh *mesh, enum mesh_question question, const float *input,

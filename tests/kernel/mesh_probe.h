@@ -1,12 +1,12 @@
-/* What one packet of rays finds on a mesh, for the tests: the same source natively and as OpenCL C.
- * Arrays are one plane a quantity, `rays` elements each (a multiple of WIDTH). */
+/* Probes a mesh with one packet of rays, for tests that use this source natively and as OpenCL C.
+ * Arrays have one plane for each quantity, with `rays` elements each (a multiple of WIDTH). */
 #ifndef SONJECT_TESTS_MESH_PROBE_H
 #define SONJECT_TESTS_MESH_PROBE_H
 
 #include "mesh_surface.h"
 
 enum probe_input {
-    PROBE_POINT = 0, /* x, y, z: closest to the mesh's origin */
+    PROBE_POINT = 0, /* x, y, z of the ray's point closest to the mesh's origin */
     PROBE_DIRECTION = 3,
     PROBE_MINIMUM = 6,
     PROBE_MAXIMUM = 7,
@@ -15,9 +15,9 @@ enum probe_input {
 
 enum probe_output {
     PROBE_DISTANCE = 0,
-    PROBE_TRIANGLE = 1, /* bits of a whole number */
-    PROBE_BLOCKED = 2,  /* likewise, 0 or -1 */
-    PROBE_FACET = 3,    /* x, y, z; 0 without a hit, as what follows */
+    PROBE_TRIANGLE = 1, /* bits of an integer */
+    PROBE_BLOCKED = 2,  /* bits of an integer, 0 or -1 */
+    PROBE_FACET = 3,    /* x, y, z; like all planes below, 0 without a hit */
     PROBE_SMOOTH = 6,
     PROBE_LIFTED = 9,
     PROBE_HIT = 12,
@@ -69,7 +69,7 @@ FUNCTION void probe_blocked(struct mesh_view mesh, GLOBAL const float *input, GL
     STORE_VFLOAT(blocked, output + PROBE_BLOCKED * rays + first);
 }
 
-/* Of the triangles that probe_nearest found. */
+/* Finds the surface at the triangles that probe_nearest found. */
 FUNCTION void probe_surface(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
                             RECORD_WORD rays, RECORD_WORD first)
 {

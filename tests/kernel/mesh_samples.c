@@ -51,7 +51,7 @@ static void add_triangle(struct mesh_sample *sample, uint32_t a, uint32_t b, uin
     corners[2] = c;
 }
 
-/* A point of an octant, by whole shares of the corners along x, y and z. */
+/* Adds a vertex of an octant of the unit sphere. x, y, z: integer weights of its corners. */
 static uint32_t octant_vertex(struct mesh_sample *sample, const double signs[3], double x, double y,
                               double z)
 {
@@ -77,7 +77,7 @@ static void add_octant(struct mesh_sample *sample, const double signs[3], int st
     }
 }
 
-/* Vertices that neighbours share are there several times, with the same bits: to be welded. */
+/* Repeats vertices that neighbours share, with the same bits, so that the mesh must weld them. */
 void sample_sphere(struct mesh_sample *sample, int subdivisions)
 {
     const int steps = 1 << subdivisions;

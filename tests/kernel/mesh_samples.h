@@ -11,24 +11,24 @@ struct mesh_sample {
     size_t vertices, triangles;
 };
 
-/* Sphere of radius 1: 8 * 4^subdivisions triangles from an octahedron. */
+/* Makes a sphere of radius 1 with 8 * 4^subdivisions triangles from an octahedron. */
 void sample_sphere(struct mesh_sample *sample, int subdivisions);
 
-/* Box of 2 x 1.2 x 0.6, 12 triangles. */
+/* Makes a box of 2 x 1.2 x 0.6 with 12 triangles. */
 void sample_box(struct mesh_sample *sample);
 
-/* Ring about z with bumps and hollows: 2 * around * across triangles, all within 1.05 of the
- * origin. The middle of its tube, 0.65 from the axis, is inside. */
+/* Makes a ring about z with bumps and hollows. All its 2 * around * across triangles are within
+ * 1.05 of the origin. The middle of the ring's tube, 0.65 from the axis, is inside. */
 void sample_ring(struct mesh_sample *sample, unsigned around, unsigned across);
 
-/* Triangles strewn within 1 of the origin, from large to very thin ones; no closed mesh. */
+/* Strews triangles within 1 of the origin, from large to very thin ones. The mesh is not closed. */
 void sample_litter(struct mesh_sample *sample, size_t triangles);
 void sample_clear(struct mesh_sample *sample);
 
-/* Uniform in [low, high); one sequence for all samples and tests of a program. */
+/* Returns a uniform number in [low, high). A program's samples and tests share one sequence. */
 double sample_uniform(double low, double high);
 
-/* A direction, uniform over the sphere. */
+/* Draws a direction, uniform over the sphere. */
 void sample_direction(double direction[3]);
 
 #endif

@@ -13,14 +13,14 @@ struct probe_device {
     device_buffer record, branches, leaves, normals;
 };
 
-/* Builds the probe for that many lanes and loads the mesh. */
+/* Builds the probe for `width` lanes and loads the mesh. */
 void probe_device_begin(struct probe_device *probe, struct report *report, struct device *device,
                         unsigned width, const struct mesh *mesh);
 void probe_device_end(struct probe_device *probe);
 
-/* Runs "nearest", "blocked" or "surface" over `rays` rays (a multiple of the width): input has
- * PROBE_INPUTS planes; output, PROBE_OUTPUTS planes, is read and written. Best of `repeats`
- * launches, s: of a CPU the processors' time over their number, as other programs may run too. */
+/* Runs "nearest", "blocked" or "surface" over `rays` rays (a multiple of the width). input has
+ * PROBE_INPUTS planes. output, PROBE_OUTPUTS planes, is read and written. Returns the best of
+ * `repeats` times, s: for CPUs processor time over cores, as other programs may run too. */
 double probe_device_run(struct probe_device *probe, const char *kernel, const float *input,
                         float *output, uint32_t rays, int repeats);
 

@@ -82,8 +82,8 @@ static inline struct ray ray_of(struct point closest, struct point way)
     return ray;
 }
 
-/* From a sonar `range` away from the frame's origin, at a random depression, towards a target,
- * counted from the point closest to the origin. */
+/* Returns a ray towards a target from a sonar `range` away from the frame's origin, at a random
+ * depression. The ray counts from its point closest to the origin. */
 static inline struct ray ray_towards(struct point target, double range)
 {
     const double depression = uniform(0.02, 1.5);

@@ -92,14 +92,14 @@ static void build_box(struct body *body, const sonject_object_params *solid, dou
     }
 }
 
-/* The top goes through the tail's upper edge and the nose's. */
+/* Builds a wedge. Its top goes through the upper edges of tail and nose. */
 static void build_wedge(struct body *body, const sonject_object_params *solid, double more)
 {
     const double fall = (solid->height_m - solid->front_height_m) / solid->length_m;
     const double length = sqrt(1.0 + fall * fall);
     const double middle = 0.5 * solid->front_height_m; /* height of the top over x = 0 */
     build_box(body, solid, more);
-    body->surfaces[body->count - 1].numbers[3] += solid->height_m; /* no level top */
+    body->surfaces[body->count - 1].numbers[3] += solid->height_m; /* lifts the level top away */
     add_surface(body, PLANE, fall / length, 0.0, 1.0 / length, middle / length + more);
 }
 
@@ -169,7 +169,7 @@ static void fit_ends(sonject_object_params *solid)
         solid->tail_end_depth_m = radius * pow(10.0, uniform(-2.0, 0.0));
 }
 
-/* Ends flat or spherical. */
+/* Chooses flat or spherical ends. */
 static void fit_cylinder(sonject_object_params *solid, double thinnest)
 {
     fit_capsule(solid, thinnest);
@@ -178,7 +178,7 @@ static void fit_cylinder(sonject_object_params *solid, double thinnest)
     fit_ends(solid);
 }
 
-/* At least one end open. */
+/* Chooses ends of which at least one is open. */
 static void fit_tube(sonject_object_params *solid, double thinnest)
 {
     fit_capsule(solid, thinnest);
@@ -232,8 +232,8 @@ void body_init(struct body *body, const sonject_object_params *solid, double mor
     row->build(body, solid, more);
 }
 
-/* Whether a point lies within all surfaces but one. A cylinder is the union of its straight part
- * and its ends. */
+/* Returns whether a point lies within all surfaces but one. A cylinder is the union of its straight
+ * part and its ends. */
 static int is_within(const struct body *body, const struct surface *but, struct point p)
 {
     const int is_cylinder = body->is_round;
@@ -299,7 +299,7 @@ static int real_roots(const double c[5], double root[4])
     return count;
 }
 
-/* Roots of the surface's polynomial along the ray, in units of `scale` from `middle`. */
+/* Finds the roots of the surface's polynomial along the ray, in units of `step` from `middle`. */
 static int crossings(const struct surface *surface, struct point middle, struct point step,
                      double root[4])
 {
@@ -329,7 +329,7 @@ static int crossings(const struct surface *surface, struct point middle, struct 
     const double square = odd * odd - 4.0 * a * at_0;
     if (square < 0.0)
         return 0;
-    const double half = -0.5 * (odd + copysign(sqrt(square), odd)); /* where nothing cancels */
+    const double half = -0.5 * (odd + copysign(sqrt(square), odd)); /* avoids cancellation */
     root[0] = half / a;
     root[1] = half != 0.0 ? at_0 / half : 0.0;
     return 2;

@@ -1,6 +1,6 @@
-/* Where rays meet solids, in double precision and in a way of its own: every surface is a
- * polynomial of the point, which is sampled along the ray and solved; a root counts where it lies
- * on the part of the surface that the solid has. */
+/* A second way to find where rays meet solids, in double precision. Every surface is a polynomial
+ * of the point, which is sampled along the ray and solved. A root counts where it lies on the part
+ * of the surface that the solid has. */
 #ifndef SONJECT_TESTS_REFERENCE_SOLIDS_H
 #define SONJECT_TESTS_REFERENCE_SOLIDS_H
 
@@ -14,51 +14,49 @@ enum surface_kind {
     TUBE,      /* about x: radius */
     ELLIPSOID, /* three semi-axes */
     CONE,      /* about z: radius at z = 0, its growth with z */
-    TORUS      /* radius, radius of the ring */
+    TORUS      /* radius of the ring, radius of its tube */
 };
 
 struct surface {
     enum surface_kind kind;
     double numbers[4];
-    double from, to; /* of x: the part that counts */
+    double from, to; /* range of x that counts */
 };
 
 struct body {
     struct surface surfaces[12];
     int count;
-    int is_thin;                    /* has no inside */
-    int is_round;                   /* a straight part with two ends */
+    int is_thin;                    /* 1: has no inside */
+    int is_round;                   /* 1: has a straight part with two ends */
     double rim;                     /* radius of a disc */
-    double half_length, half_width; /* of a plate */
+    double half_length, half_width; /* half sizes of a plate */
     double size;                    /* longest half size */
 };
 
-/* Every shape that has sizes. What tests ask of rays, lanes, extents and poses they ask of all
- * rows.
- */
+/* Every shape that has sizes. Tests of rays, lanes, extents and poses go through all rows. */
 extern const struct solid_row {
     const char *name;
     uint32_t shape;
-    /* Its surfaces, `more` m further out. */
+    /* Adds the surfaces, `more` m further out. */
     void (*build)(struct body *body, const sonject_object_params *solid, double more);
-    /* Makes random sizes fit together, none thinner than that part of another; NULL: they do. */
+    /* Makes random sizes fit together, none below `thinnest` times another. NULL: all fit. */
     void (*fit)(sonject_object_params *solid, double thinnest);
 } solid_rows[];
 extern const int solid_row_count;
 
-/* `more`: m that every surface is moved outwards. */
+/* Builds the body of a solid. more: m that every surface is moved outwards. */
 void body_init(struct body *body, const sonject_object_params *solid, double more);
 
-/* Whether a point lies in it, or in the plane of a sheet on it; tubes are taken as filled. */
+/* Returns whether a body or filled tube holds a point. Points for sheets must be in their plane. */
 int body_holds(const struct body *body, struct point p);
 
 struct solid_hit {
-    double distance;     /* INFINITY: none */
+    double distance;     /* INFINITY: no hit */
     struct point normal; /* outward; of sheets and tubes towards the ray's start */
-    double to_edge;      /* about how far the next other surface or rim is */
+    double to_edge;      /* approximate distance to the next other surface or rim */
 };
 
-/* The first surface beyond minimum, all in the solid's own frame. */
+/* Returns the first hit beyond minimum, all in the solid's own frame. more: as in body_init. */
 struct solid_hit solid_first_hit(const sonject_object_params *solid, struct point start,
                                  struct point direction, double minimum, double more);
 

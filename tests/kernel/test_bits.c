@@ -1,5 +1,5 @@
-/* The same bits everywhere: what a device tallies, at every width, chunking and core count, is what
- * the same kernels give as the C compiler takes them, with the fewest lanes. */
+/* Tests that results have the same bits everywhere. At every width, chunking and core count, a
+ * device must tally what the same kernels tally as plain C with the fewest lanes. */
 #include "claims.h"
 #include "elementary.h"
 #include "random.h"
@@ -18,30 +18,30 @@ enum scene_flag {
     IN_LAYERS = 1,     /* under a layer of faster water */
     ON_RELIEF = 2,     /* among ripples, a mound and scour */
     ON_RIPPLES = 4,    /* among ripples alone */
-    WITH_MAP = 8,      /* of reflectivity, which chains go by too */
+    WITH_MAP = 8,      /* map of reflectivity, which chains use too */
     WITH_ASPECTS = 16, /* seen by a weighted synthetic aperture */
     WITH_BEAM = 32,    /* seen by the beam of a turned real aperture */
     UNDER_SURFACE = 64,
     SMOOTH_SEABED = 128,
     PAPER_COLUMNS = 256,
     BRUTE_FORCE = 512,
-    /* what is compared */
+    /* parts that are compared */
     ROUGH = 1024,
-    AT_ALL = 4096, /* widths: programs take long to compile */
+    AT_ALL = 4096, /* at all widths; others at few, as programs take long to compile */
     GLINTS = 8192,
     IMAGES = 16384,
     CHAINS = 32768,
     FOULED = 131072,
-    TILES = 65536 /* of the rough part by all ways, at the least and the most lanes */
+    TILES = 65536 /* tiles of the rough part by all paths, at the least and the most lanes */
 };
 
 /* Objects of a scene. */
 enum object_set {
     NO_OBJECTS,
     FOUR_OBJECTS,
-    MORE_SHAPES, /* of every kind */
+    MORE_SHAPES, /* one of every row of solid_rows */
     RINGS,       /* meshes, one with smooth normals */
-    CLUTTER,     /* so many that a tree is searched, and groups of targets are aimed at */
+    CLUTTER,     /* enough to search a tree, and to aim rays at groups of targets */
     TWO_OBJECTS,
     CROWD /* a mesh and spheres, too many for one launch */
 };
@@ -50,7 +50,7 @@ static const struct scene_case {
     const char *name;
     enum object_set objects;
     unsigned flags;
-    double source_side; /* m; not 0: visibility is tested */
+    double source_side; /* m; visibility is tested unless 0 */
     uint32_t interactions;
 } scenes[] = {
     {"plain", FOUR_OBJECTS, ROUGH | AT_ALL | GLINTS | IMAGES | TILES, 0.0, 1},
@@ -90,7 +90,7 @@ static const struct scene_case {
      4.0, 3},
 };
 
-/* Of every row of the reference one. */
+/* Places a shape of every row of solid_rows. */
 static void place_more_shapes(struct bench *bench)
 {
     for (int i = 0; i < solid_row_count; i++) {
@@ -98,7 +98,7 @@ static void place_more_shapes(struct bench *bench)
         sonject_object_params *object = bench_add(bench, row->shape, 0.5, 0.4, 0.4);
         object->height_m = 0.3;
         object->top_diameter_m = 0.3;
-        do { /* a cylinder's ends not both flat: round ones are a shape of their own in kernels */
+        do { /* not both ends flat, as kernels have a shape of their own for round ones */
             if (row->fit)
                 row->fit(object, 0.1);
         } while (row->shape == SHAPE_CYLINDER && object->nose_end == SONJECT_END_FLAT &&
@@ -255,25 +255,25 @@ static float *make_map(const struct scene_case *scene)
     return map;
 }
 
-/* What is traced of a scene. */
+/* The part of a scene that is traced. */
 struct subject {
     const struct scene_case *scene;
     enum scene_flag part; /* ROUGH, GLINTS or CHAINS */
     const float *map;
-    uint32_t object;               /* whose glints */
-    const struct image_pair *pair; /* by image sources; NULL: straight */
-    bool is_whole;                 /* traced all strips at once alone */
+    uint32_t object;               /* number of the object whose glints are traced */
+    const struct image_pair *pair; /* pair of image sources; NULL: straight paths */
+    bool is_whole;                 /* only traced with all strips at once */
 };
 
-/* The trace of a subject; only its part's is used. */
+/* The trace of a subject. Only the member for the subject's part is used. */
 struct trace {
     struct rough_trace rough;
     struct smooth_trace smooth;
     struct chain_trace chains;
     struct launch *launch;
     device_buffer tallies;
-    size_t line;        /* tallies of a strip */
-    struct span strips; /* of the grid, or of the fan aimed at */
+    size_t line;        /* number of tallies in a strip */
+    struct span strips; /* strips of the grid */
 };
 
 static void trace_begin(struct trace *trace, struct bench *bench, const struct subject *subject)
@@ -306,9 +306,9 @@ static void trace_begin(struct trace *trace, struct bench *bench, const struct s
     trace->line = (size_t)grid->bins.count * (subject->part == GLINTS ? 2 : 1);
 }
 
-/* Everything that a trace leaves behind. */
+/* All that a trace leaves behind. */
 struct tallies {
-    size_t count, tile_count; /* elements */
+    size_t count, tile_count; /* numbers of elements */
     int64_t *sums, *tiles;
     struct trace_counts counts;
 };
@@ -343,7 +343,7 @@ static void expect_same(const struct subject *subject, const struct tallies *a,
     assert_int_equal(a->counts.queries, b->counts.queries);
 }
 
-/* A sum without weight would let a dead trace pass. */
+/* Returns whether enough tallies are filled. Otherwise two dead traces would pass as the same. */
 static bool is_alive(const struct subject *subject, const struct tallies *tallies)
 {
     size_t filled = 0;
@@ -352,7 +352,7 @@ static bool is_alive(const struct subject *subject, const struct tallies *tallie
     return filled > (subject->part == CHAINS ? 300 : tallies->count / 20);
 }
 
-/* Fan number i of the trace, and its strips. */
+/* Returns fan number i of the trace, with its strips. */
 static struct chain_fan aim(struct trace *trace, struct bench *bench, const struct subject *subject,
                             uint32_t i)
 {
@@ -374,7 +374,7 @@ static void read_sums(struct bench *bench, device_buffer buffer, size_t count, i
                                           count * sizeof *sums, sums));
 }
 
-/* Strips of one launch; of what is not a chain's they are read at once. */
+/* Traces the strips of one launch. Sums are read at once, but sums of chains later. */
 static void run_strips(struct trace *trace, struct bench *bench, const struct subject *subject,
                        const struct chain_fan *fan, struct span strips, int64_t *sums)
 {
@@ -421,13 +421,13 @@ static struct tallies trace_on_device(struct bench *bench, const struct subject 
     return tallies;
 }
 
-/* The same device with kernels of each number of lanes, and what all are compared with. */
+/* One device with kernels of each number of lanes, and the reference for all of them. */
 static uint32_t widths[BENCH_WIDTHS];
 static struct device *devices[BENCH_WIDTHS], *reference;
 static size_t width_count;
 
-/* Programs take long to compile, and all are of the same vectors: only some are compared at all
- * widths, all at the most lanes. */
+/* Returns whether a subject is compared at a width. All are at the most lanes, but only some at all
+ * widths, since programs take long to compile and all use the same vectors. */
 static bool is_compared(const struct bench *bench, const struct subject *subject, size_t w)
 {
     if (w == width_count - 1)
@@ -437,8 +437,8 @@ static bool is_compared(const struct bench *bench, const struct subject *subject
     return subject->part == GLINTS && w == 0 && !bench->tracer.relief;
 }
 
-/* Strips are traced all at once and, but for a whole subject, few at a time. Returns whether there
- * was anything to compare. */
+/* Compares a subject traced all at once and, unless it is whole, a few strips at a time. Returns
+ * whether there was anything to compare. */
 static bool compare_bits(struct bench *bench, const struct subject *subject)
 {
     const int32_t least = subject->part == ROUGH ? 1 : subject->part == GLINTS ? 5 : 13;
@@ -452,8 +452,8 @@ static bool compare_bits(struct bench *bench, const struct subject *subject)
         bench->tracer.device = w == width_count - 1 && subject->part == CHAINS ? own : devices[w];
         print_message("%s, width %u\n", subject->scene->name,
                       (unsigned)bench->tracer.device->width);
-        /* at the lower end each takes longest; a strip alone would be traced again for each of its
-         * many neighbours */
+        /* the fewest lanes take longest; with aspects over relief, a strip launched alone would be
+         * traced again for each of its many neighbours */
         const bool is_slow = (w == 0 && width_count > 1) || (subject->scene->flags & WITH_ASPECTS &&
                                                              subject->scene->flags & ON_RELIEF);
         const int32_t chunks[] = {1 << 20, is_slow ? 37 : least};
@@ -530,8 +530,8 @@ TEST(test_smooth_tallies)
     on_scenes_with(GLINTS, compare_glints);
 }
 
-/* A rough surface over a fluid seabed, and pairs of the sonar and its images in both; over relief
- * the sea surface alone reflects. */
+/* Compares glints by pairs of the sonar and its images in a rough sea surface and a fluid seabed.
+ * Over relief the sea surface alone reflects. */
 static void compare_images(struct bench *bench, const struct scene_case *scene)
 {
     static const size_t numbers[][2] = {{0, 1}, {1, 1}, {0, 2}, {1, 4}, {2, 4}};
@@ -552,7 +552,7 @@ static void compare_images(struct bench *bench, const struct scene_case *scene)
             const struct subject subject = {scene, GLINTS, NULL, object, &pair, alive > 0};
             alive += compare_bits(bench, &subject);
         }
-    /* of 8 or 20: the plate is not seen from two sides everywhere */
+    /* 8 or 20 subjects: some pairs of sources give no glint of the plate */
     assert_true(alive >= 3 * pairs);
 }
 
@@ -561,7 +561,7 @@ TEST(test_image_tallies)
     on_scenes_with(IMAGES, compare_images);
 }
 
-/* Tiles of the rough part, straight and by image sources, on a fresh trace. */
+/* Returns the tiles of the rough part by straight paths and image sources, of a fresh trace. */
 static int64_t *all_tiles(struct bench *bench, size_t *elements)
 {
     static struct rough_trace trace;
@@ -587,7 +587,7 @@ static void compare_tiles(struct bench *bench, const struct scene_case *scene)
     bench->scene.surface.water_depth_m = 7.5;
     make_scene(bench, scene);
     bench->scene.injection.interactions = 4;
-    for (int end = 0; end < 2; end++) { /* of the row of widths, where that has one alone, twice */
+    for (int end = 0; end < 2; end++) { /* both ends of the row of widths, which may be one */
         bench->tracer.device = devices[end == 0 ? 0 : width_count - 1];
         tiles[end] = all_tiles(bench, &elements[end]);
     }
@@ -603,7 +603,7 @@ TEST(test_tiles_by_all_ways)
     on_scenes_with(TILES, compare_tiles);
 }
 
-/* One core of a device instead of all. */
+/* Tests that one core of a device gives the same bits as all cores. */
 TEST(test_one_core)
 {
     const struct scene_case *scene = &scenes[2];

@@ -1,4 +1,4 @@
-/* Chains of several interactions, on the kernel's own source: closed forms of their energies. */
+/* Tests the energies of chains of interactions, from the kernel's source, against closed forms. */
 #include "claims.h"
 #include "kernels/trace_chains.h"
 
@@ -7,7 +7,7 @@
 #define BINS_A_METRE 1000.0f
 #define RADIUS       5.0f
 
-/* A sonar in the middle of a sphere, its rays in one vertical plane. */
+/* Places a sonar in the middle of a sphere, with its rays in one vertical plane. */
 static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
                        struct object_record *sphere, float lambert)
 {
@@ -24,7 +24,7 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     fan->bins_per_metre = BINS_A_METRE;
     fan->bins = BINS;
     fan->bin_at_reference = 1.0f; /* echoes come up to 0.04 bins before the middle one */
-    fan->quanta = 17179869184.0f; /* so fine that rounding does not count */
+    fan->quanta = 17179869184.0f; /* fine enough that rounding is negligible */
     fan->seed_low = 11;
     fan->stream = STREAM_CHAIN_RAYS;
     fan->only_object = -2;
@@ -47,7 +47,7 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     sphere->surface.lambert_exponent = 1.0f;
 }
 
-/* Energy of each order without the normalisation by half the path to the fourth power. */
+/* Computes each order's energy without the normalisation by half the path to the fourth power. */
 static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
                          double energy[ORDERS])
 {
@@ -62,9 +62,9 @@ static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
     }
 }
 
-/* In a closed diffuse sphere with the sonar at its centre every bounce keeps the albedo, whatever
- * the direction; so the orders' energies are a geometric series. A strip of millimetres is off the
- * centre by so little that cosines differ by 1e-5. */
+/* Tests that the orders' energies are a geometric series. In a closed diffuse sphere with the sonar
+ * at its centre every bounce keeps the albedo, whatever the direction. The strip of 4 cm is so
+ * little off the centre that cosines differ by 1e-5. */
 TEST(test_closed_sphere)
 {
     const float lambert = 0.25f;
@@ -83,7 +83,7 @@ TEST(test_closed_sphere)
     for (int order = 1; order < ORDERS; order++) {
         const double ratio = energy[order] / energy[0] / pow(albedo, order);
         printf("order %d over order 1, over albedo^%d: %.6f\n", order + 1, order, ratio);
-        /* every path has the same raw energy: what is left is the width of the bins */
+        /* all paths have the same raw energy: the tolerance is for the width of the bins */
         assert_true(fabs(ratio - 1.0) < 1e-3);
     }
     free(tallies);
@@ -91,7 +91,7 @@ TEST(test_closed_sphere)
 
 #define SAMPLES 150000
 
-/* A wavy surface over a target that is near, with a lobe of its own kinds each. */
+/* Lays a wavy sea surface over a near target. Each kind of surface has lobes of its own. */
 static void lay_waves(struct chain_record *chains, struct sphere_record *sphere, int kind)
 {
     memset(chains, 0, sizeof *chains);
@@ -109,8 +109,8 @@ static void lay_waves(struct chain_record *chains, struct sphere_record *sphere,
     sphere->radius = 1.0f;
 }
 
-/* What the surface sends on of sound that comes at an angle: its mirror, and the integral of its
- * rough part over all directions. */
+/* Returns the share of arriving energy that the surface sends on: by its mirror, and by its rough
+ * part, integrated over all directions. */
 static double energy_sent_on(const struct chain_record *chains, const struct chain_hit *hit)
 {
     const int steps = 500;
@@ -133,8 +133,9 @@ static double energy_sent_on(const struct chain_record *chains, const struct cha
     return sum;
 }
 
-/* A step from the sea surface brings, on average, what the surface sends on, whether directions are
- * led to the target or not: no more than came. 4 standard errors and 0.2 % of the quadrature. */
+/* Tests that steps from the sea surface bring, on average, what the surface sends on and no more
+ * than came, whether directions are led to the target or not. Tolerance: 4 standard errors, 0.2 %
+ * for the quadrature. */
 TEST(test_sea_surface_keeps_energy)
 {
     static const float cosines[] = {1.0f, 0.6f, 0.2f, 0.05f};
@@ -169,16 +170,16 @@ TEST(test_sea_surface_keeps_energy)
     }
 }
 
-#define ROWS_OF_SKY 8 /* parts of the hemisphere, of equal solid angles */
+#define ROWS_OF_SKY 8 /* rings, and sectors: parts of equal projected solid angle */
 #define SKY         (ROWS_OF_SKY * ROWS_OF_SKY)
 
-/* Spheres as a launch has them, with the groups that stand for many. */
+/* Spheres as a launch lays them, with the groups that stand for many. */
 struct targets {
     struct sphere_record spheres[3];
     struct sphere_group group, bound;
 };
 
-/* Where a point of level seabed lies: within the first `inside` of three spheres. */
+/* Lays `count` spheres around a point of level seabed. The first `inside` of them contain it. */
 static void lay_targets(struct targets *targets, struct chain_record *chains, int count, int inside)
 {
     static const float ways[3][3] = {
@@ -194,7 +195,7 @@ static void lay_targets(struct targets *targets, struct chain_record *chains, in
     }
     targets->bound.radius[0] = 2.0f;
     memset(chains, 0, sizeof *chains);
-    chains->spheres = 3; /* groups lie behind them */
+    chains->spheres = 3; /* groups lie behind three spheres */
     chains->sea_surface_height = 10.0f;
     chains->seabed.lambert = 0.1f;
     chains->seabed.lambert_exponent = 1.0f;
@@ -244,7 +245,7 @@ static int is_towards_some(const struct targets *targets, int count, struct vect
     return 0;
 }
 
-/* What Lambert's law sends to each part of the sky, of all or only towards the targets. */
+/* Computes what Lambert's law sends to each part of the sky, or only towards the targets. */
 static void light_sky(const struct targets *targets, int count, int is_all, double sky[SKY])
 {
     const int steps = 100 * ROWS_OF_SKY;
@@ -261,9 +262,9 @@ static void light_sky(const struct targets *targets, int count, int is_all, doub
         }
 }
 
-/* Steps' weights are what the seabed scatters over the density they are drawn with. So, if that is
- * the one they are weighed by, they bring to each part of the sky what Lambert's law does. Sums of
- * squares over the parts' variances, against chi squared; 0.1 % of a part for the quadrature. */
+/* Expects steps to bring the energy of Lambert's law to each part of the sky. Weights are
+ * scattering over the density of directions, which must be the density of the draws. Squared
+ * differences over variances are compared with chi squared. 0.1 % of a part is for quadrature. */
 static void expect_sky(const struct targets *targets, const struct chain_record *chains, int count,
                        int is_all, int order, uint32_t stream)
 {
@@ -317,8 +318,8 @@ TEST(test_directions_are_weighed_as_they_are_drawn)
     }
 }
 
-/* What Lambert's law sends into a cone above the horizon is mu cos times pi r^2/d^2. A direction is
- * rounded by 1e-7 of the distance, which must not take it out of the cone that it was drawn in. */
+/* Lambert's law sends mu cos times pi r^2/d^2 into a cone above the horizon. A direction is rounded
+ * by 1e-7 of the distance, which must not take it out of the cone that it was drawn in. */
 TEST(test_far_and_small_targets_get_their_share)
 {
     static const float radii[] = {0.15f, 0.05f, 0.02f, 0.005f};

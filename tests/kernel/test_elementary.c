@@ -1,4 +1,4 @@
-/* kernels/elementary.h against double precision, over the whole range that each function states. */
+/* Tests kernels/elementary.h against double precision, over each function's whole stated range. */
 #include "claims.h"
 #include "elementary.h"
 
@@ -17,7 +17,7 @@ static double random_fraction(void)
     return (random_word() + 0.5) / 4294967296.0;
 }
 
-/* Both signs, magnitudes spread evenly over the octaves from 2^low to 2^high. */
+/* Returns a number of either sign, its magnitude spread evenly over octaves 2^low to 2^high. */
 static float random_over_octaves(double low, double high)
 {
     const double value = exp2(low + (high - low) * random_fraction());
@@ -38,7 +38,7 @@ TEST(test_nearest_integer)
     }
 }
 
-/* The bounds below are those that elementary.h states; the measured worst is printed. */
+/* The largest errors found. They are printed, and held to the bounds that elementary.h states. */
 struct worst {
     double sine, cosine, sine_relative;
 };
@@ -51,7 +51,7 @@ static void compare_sine(float cycles, struct worst *worst)
     const double error = fabs(sine - sin(2.0 * PI * turn));
     worst->sine = fmax(worst->sine, error);
     worst->cosine = fmax(worst->cosine, fabs(cosine - cos(2.0 * PI * turn)));
-    if (fabs(turn) < 0.125 && fabs(turn) > 1e-36) /* below, single precision loses digits */
+    if (fabs(turn) < 0.125 && fabs(turn) > 1e-36) /* below 1e-36, single precision loses digits */
         worst->sine_relative = fmax(worst->sine_relative, error / fabs(sin(2.0 * PI * turn)));
 }
 
@@ -108,7 +108,7 @@ TEST(test_exponential)
     assert_true(exponential_of_negative(-1e30f) == 0.0f);
     assert_true(exponential_of_negative(-INFINITY) == 0.0f);
     compare_exponential(-80.0f, &worst);
-    for (int half = 1; half < 230; half++) { /* where the power of two changes */
+    for (int half = 1; half < 230; half++) { /* edges at which the power of two changes */
         const float edge = (float)(-0.5 * half * log(2.0));
         compare_exponential(edge, &worst);
         compare_exponential(nextafterf(edge, 0.0f), &worst);
@@ -135,7 +135,7 @@ TEST(test_logarithm)
     assert_true(natural_logarithm(1.0f) == 0.0f);
     compare_logarithm(1.17549435e-38f, &worst);
     compare_logarithm(3.4e38f, &worst);
-    for (int power = -125; power < 127; power++) { /* where the exponent is split off */
+    for (int power = -125; power < 127; power++) { /* edges at which the exponent is split off */
         const float edge = ldexpf(1.0f, power);
         const float root = ldexpf(1.41421356f, power);
         compare_logarithm(edge, &worst);
@@ -155,7 +155,7 @@ TEST(test_cube_root)
 {
     double worst = 0.0;
     for (int i = 0; i < POINTS; i++) {
-        const float value = fabsf(random_over_octaves(-100.0, 99.0)); /* to 6e29 */
+        const float value = fabsf(random_over_octaves(-100.0, 99.0)); /* up to 6e29 */
         worst = fmax(worst, fabs(cube_root(value) / cbrt((double)value) - 1.0));
     }
     print_message("cube root, relative %.3g\n", worst);

@@ -1,12 +1,12 @@
-/* Element level: the same bits at every width and number of work-items, and series that are what
- * the formula of kernels/MATH.md gives in double precision. */
+/* Tests element level. Series have the same bits at every width and number of work-items, and agree
+ * with the formula of kernels/MATH.md in double precision. */
 #include "claims.h"
 
 #include "device/device.h"
 #include "elements/elements.h"
 #include "physics/bench.h"
 
-/* 100 kHz and 100 m, aspects to 25 deg, at the end of a long track. */
+/* Lays a scene at 100 kHz and 100 m, with aspects to 25 deg, at the end of a long track. */
 static void lay(struct bench *bench, sonject_element_layout *layout)
 {
     struct scene *scene = &bench->scene;
@@ -26,7 +26,7 @@ static void lay(struct bench *bench, sonject_element_layout *layout)
                                            &bench->tracer.response));
 }
 
-/* What the bench's device makes of impulses on a grid, for free(). */
+/* Returns the series that the bench's device makes of impulses on a grid. The caller frees them. */
 static float *series_of(struct bench *bench, const sonject_element_layout *layout,
                         const struct line_grid *grid, const float *real_part,
                         const float *imaginary_part)
@@ -45,8 +45,8 @@ static float *series_of(struct bench *bench, const sonject_element_layout *layou
     return series;
 }
 
-/* Within and beyond the window; the first strips have none. A GPU shares a line among hundreds of
- * work-items. CPUs from four lanes on: see test_bits.c. */
+/* Impulses lie within and beyond the window; the first strips have none. A GPU shares a line among
+ * hundreds of work-items. CPUs are tested from four lanes on: see test_formed_bits.c. */
 TEST(test_same_bits)
 {
     enum {
@@ -90,7 +90,7 @@ TEST(test_same_bits)
     bench_close(&bench);
 }
 
-/* The formula, in double precision, for one impulse; pairs of real and imaginary part. */
+/* Computes one impulse's series by the formula, in pairs of real and imaginary part. */
 static void hear_exactly(const sonject_element_layout *layout,
                          const struct point_response *response, double x, double range,
                          double amplitude, double *series)
@@ -126,7 +126,7 @@ TEST(test_delays_and_phases)
     sonject_element_layout layout;
     lay(&bench, &layout);
     const struct tracer *tracer = &bench.tracer;
-    /* the impulse: strip 11 of 7 a row, bin 613 of 26 a pixel */
+    /* the impulse is in strip 11, 7 a row, and bin 613, 26 a pixel */
     const struct line_grid grid = {7, 26, {11, 1}, {613, 1}};
     const double x = view_x_of_row(&tracer->view, 11.5 / 7.0 - 0.5);
     const double range = view_processor_range(&tracer->view, 613.0 / 26.0);
@@ -149,7 +149,7 @@ TEST(test_delays_and_phases)
         /* single precision of offsets: 2 * 45 m * 2^-24 * 0.43 / 1.5 cm is 1.5e-4 cycles */
         expect_below("phase, rad", fabs(atan2(product_imaginary, product_real)), 2e-3);
         expect_close("level", product_real / square, 1.0, 1e-3);
-        /* sharing between fine samples (5e-4 at the peak), phase, and delays of 1/100 of those */
+        /* sharing between fine samples (5e-4 at the peak), phase, and delays by 1/100 sample */
         expect_below("worst sample over the peak", worst / peak, 3e-3);
     }
     free(series);

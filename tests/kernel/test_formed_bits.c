@@ -1,5 +1,5 @@
-/* Images are formed with the same bits everywhere: at every width and chunking, what the kernels
- * give as the C compiler takes them, with the fewest lanes. */
+/* Tests that images are formed with the same bits everywhere. At every width and chunking, a device
+ * must give what the same kernels give as plain C with the fewest lanes. */
 #include "claims.h"
 #include "random.h"
 
@@ -38,7 +38,7 @@ static void expect_same_planes(const struct planes *a, const struct planes *b)
                          (double)a->part[part][i], (double)b->part[part][i]);
 }
 
-/* Energies of a seabed: 0 here and there. */
+/* Makes energies of a seabed, with zeros here and there. */
 static struct planes make_bins(const struct line_grid *grid, uint32_t stream)
 {
     struct planes bins = planes_of(line_grid_cells(grid));
@@ -47,7 +47,7 @@ static struct planes make_bins(const struct line_grid *grid, uint32_t stream)
         two_uniforms(random_key_of(8, 0, stream, 3), i, 0, &u, &v);
         bins.part[0][i] = u < 0.05f ? 0.0f : u * 1e-5f;
         bins.part[1][i] = (v - 0.5f) * 1e-5f;
-        /* as of glints: nothing on some strips, on others only in a few bins */
+        /* like glints: some strips hold nothing, others hold only a few bins */
         const uint32_t strip = i / (uint32_t)grid->bins.count;
         const uint32_t bin = i % (uint32_t)grid->bins.count;
         const uint32_t first = 30 + strip * 7 % 37;
@@ -77,7 +77,7 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
     return pixels;
 }
 
-/* Next to nothing in place of zeros, which are left out. */
+/* A value next to nothing, in place of zeros, which forming leaves out. */
 #define NEXT_TO_NOTHING 1e-42f
 static void fill_gaps(struct planes *bins)
 {
@@ -87,7 +87,7 @@ static void fill_gaps(struct planes *bins)
                 bins->part[part][i] = NEXT_TO_NOTHING;
 }
 
-/* Amplitudes of speckle go by the square root of that, 1e-21; those of the image by 1e-6. */
+/* Compares planes. Speckle of NEXT_TO_NOTHING has amplitudes of 1e-21, the image of 1e-6. */
 static void expect_alike(const struct planes *a, const struct planes *b)
 {
     double most = 0.0;
@@ -110,8 +110,8 @@ static void begin_lines(struct form_lines *lines, struct bench *bench, enum form
 static uint32_t widths[BENCH_WIDTHS];
 static size_t width_count;
 
-/* Intel's compiler spreads a scalar sum over lanes, which changes its order. No CPU is given one
- * lane: every one that OpenCL runs on has at least four. */
+/* Compares all widths but one lane on a CPU. Intel's compiler spreads a scalar sum over lanes,
+ * which changes its order. No CPU is given one lane, as every CPU of OpenCL has at least four. */
 static void compare_forming(struct bench *bench, enum form_kind kind, const struct line_grid *grid,
                             int is_speckle)
 {
@@ -169,7 +169,7 @@ static void compare_patch(struct bench *bench)
     compare_forming(bench, FORM_GLINT, &corner, 0);
 }
 
-/* Fine grids in corners too, partly outside the patch, as a glint's is. */
+/* Forms fine grids in corners, too, partly outside the patch as a glint's grid is. */
 TEST(test_images)
 {
     const struct line_grid far_corner = {7, 26, {600, 90}, {26 * (COLUMNS - 3), 200}};
@@ -180,7 +180,7 @@ TEST(test_images)
     bench_close(&bench);
 }
 
-/* A pulse that is complex; a beam that differs from range to range, motion from row to row. */
+/* Forms images with a complex pulse, a beam that varies with range, and motion from row to row. */
 TEST(test_images_of_varied_responses)
 {
     static const double x[] = {-0.06, -0.03, -0.01, 0.0, 0.02, 0.05};

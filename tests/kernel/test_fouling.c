@@ -1,4 +1,4 @@
-/* Fouling: the fields that kernels see are those that were asked for, and they are the object's. */
+/* Tests that fouling has the fields that were asked for, and that the fields are the object's. */
 #include "claims.h"
 #include "fouling.h"
 
@@ -8,7 +8,7 @@
 
 #define SEEDS 400
 
-/* A record with its fouling behind it, as a launch lays them. */
+/* An object's record with its fouling behind it, as a launch lays both. */
 struct fouled {
     struct object_record object;
     struct fouling_record fouling;
@@ -48,7 +48,7 @@ static sonject_object_params *open_fouled(struct bench *bench, double albedo_db,
     return &bench->scene.objects[0];
 }
 
-/* Means over points that are many lengths apart, of SEEDS fields each an estimate by itself. */
+/* Means are taken over points many lengths apart. Each of SEEDS fields gives one estimate. */
 #define POINTS 16
 static const float lags[] = {0.0f, 0.5f, 1.0f, 2.0f};
 
@@ -68,8 +68,8 @@ TEST(test_albedo_is_as_asked)
                 const float x = 3.0f * (float)(i % 4), y = 2.0f * (float)(i / 4);
                 const double albedo = albedo_of(&fouled, x, y, 0.1f);
                 means[seed] += albedo / POINTS;
-                /* of a lognormal field of mean 1 dB values have the mean -variance ln(10)/20 but
-                 * for that waves are few; from the field's own mean over points */
+                /* dB values of a lognormal field of mean 1 have the mean -variance ln(10)/20 only
+                 * if waves are many: levels count from the field's own mean over points */
                 for (size_t k = 0; k < COUNT(lags); k++) {
                     const double other = albedo_of(&fouled, x, y + lags[k] * 0.2f, 0.1f);
                     const double mid =
@@ -108,7 +108,7 @@ TEST(test_slopes_are_as_asked)
             }
         }
     }
-    /* h^2/L^2 exp(-r^2/2L^2), across the slope */
+    /* the covariance is h^2/L^2 exp(-r^2/2L^2), across the slope */
     for (size_t k = 0; k < COUNT(lags); k++) {
         const double lag = (double)lags[k];
         expect_estimate("covariance of slopes", estimate_of(lagged[k], SEEDS),
@@ -117,7 +117,7 @@ TEST(test_slopes_are_as_asked)
     bench_close(&bench);
 }
 
-/* The relief's height over the mean surface by the C library, m. */
+/* Returns the relief's height over the mean surface by the C library, m. */
 static double height_at(const struct fouled *fouled, double x, double y, double z, double rms)
 {
     double height = 0.0;
@@ -130,7 +130,7 @@ static double height_at(const struct fouled *fouled, double x, double y, double 
     return height;
 }
 
-/* n less the height's gradient along the surface, which central differences tell to 1e-6. */
+/* A facet is n less the height's gradient along the surface, here by differences true to 1e-6. */
 TEST(test_facets_are_the_reliefs)
 {
     struct bench bench;
@@ -156,7 +156,7 @@ TEST(test_facets_are_the_reliefs)
         for (int i = 0; i < 3; i++)
             worst = fmax(worst, fabs(found[i] - (n[i] - slope[i] + up_it * n[i])));
     }
-    /* waves' cosines err by 5e-5, and slopes of 12 are theirs times 2 pi h/L sqrt(2/12) at most */
+    /* cosines err by 5e-5, 12 waves' slopes by 12 times this times 2 pi h/L sqrt(2/12) */
     expect_below("error of a facet", worst, 12.0 * 5e-5 * 0.16 * 2.5 + 1e-6);
     bench_close(&bench);
 }
@@ -171,7 +171,7 @@ TEST(test_cosine)
     expect_below("error of a wave's cosine", worst, 5e-5);
 }
 
-/* All parts of an object show the same field, whichever way it lies; other objects another. */
+/* All parts of an object show one field, whichever way they lie. Other objects show another. */
 TEST(test_the_field_is_the_objects)
 {
     struct bench bench;
@@ -200,7 +200,7 @@ TEST(test_the_field_is_the_objects)
     const float x = (float)(from[0] - to[0] + 0.1), y = (float)(from[1] - to[1] + 0.05),
                 z = (float)(from[2] - to[2] + 0.02);
     const double albedo = albedo_of(&parts[0], 0.1f, 0.05f, 0.02f);
-    /* phases of a few cycles in single precision, times gains below 8 */
+    /* tolerance: phases of a few cycles in single precision, times gains below 8 */
     expect_close("albedo", albedo_of(&parts[1], x, y, z) / albedo, 1.0, 2e-5);
     expect_close("slope", (double)facet_of(&parts[1], x, y, z, up).x,
                  (double)facet_of(&parts[0], 0.1f, 0.05f, 0.02f, up).x, 2e-5);

@@ -1,6 +1,6 @@
-/* Many objects: what the hierarchy finds is what a loop over all objects finds, to the bit, for
- * rays that run together and apart, from near and far, as plain C and as vectors. On devices:
- * test_bits.c. */
+/* Tests that the hierarchy over many objects finds what a loop over all objects finds, to the bit.
+ * Rays run together and apart, from near and far, as plain C and as vectors. test_bits.c tests
+ * devices. */
 #include "claims.h"
 #include "trace_smooth.h"
 
@@ -9,16 +9,16 @@
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
-#define RAYS     4800 /* of each of four kinds */
+#define RAYS     4800 /* rays of each kind */
 #define ROWS     160
 #define COLUMNS  160
 #define MIDDLE_M 18.0
 
-/* How the rays of a test run. */
+/* Arrangements of a test's rays. */
 enum ray_kind {
     RAYS_TOGETHER, /* fans, as from the sonar */
     RAYS_APART,    /* each from one object towards another */
-    RAYS_FAR,      /* from up to 5 km away */
+    RAYS_FAR,      /* starting up to 5 km away */
     RAYS_LEVEL,    /* along axes and in planes across them, along the seabed */
     RAY_KINDS
 };
@@ -51,7 +51,7 @@ static void draw_ray(float *input, uint32_t i, enum ray_kind kind,
     struct point from = point_on(other);
     struct point to = target;
     if (kind == RAYS_TOGETHER) {
-        /* counted from broadside of the frame's origin, 1 mm from ray to ray */
+        /* points are counted from broadside of the frame's origin, 1 mm from ray to ray */
         const struct point back = {0.0, -0.94, 0.34};
         to.x += uniform(-0.01, 0.01);
         to.z += 1e-3 * (i % 16);
@@ -70,7 +70,7 @@ static void draw_ray(float *input, uint32_t i, enum ray_kind kind,
     input[7 * RAYS + i] = (float)(other - objects);
 }
 
-/* A scene of clutter: its records with the tree, and without. */
+/* A scene of clutter, with records that have the tree and records that do not. */
 struct searched {
     struct bench bench;
     struct object_record *with_tree, *looped;
@@ -163,8 +163,8 @@ TEST(test_tree_is_the_loop)
     }
 }
 
-/* Every hit lies inside the box that the tree has for the object: the margin is never used up, for
- * rays that graze it as for others. */
+/* Every hit lies inside the object's bounding sphere but for a tenth of the tree's margin. Grazing
+ * rays do not use up the margin either. */
 TEST(test_hits_are_in_their_spheres)
 {
     struct searched searched;
@@ -183,13 +183,13 @@ TEST(test_hits_are_in_their_spheres)
             continue;
         const struct point met = add(from, way, (double)distance);
         const struct point off = add(met, centre, -1.0);
-        /* a thousandth of the radius, a tenth of the margin; rounding at 20 m */
+        /* 1.001: a tenth of the margin; 2e-5: rounding at 20 m */
         assert_true(sqrt(dot(off, off)) <= 1.001 * object->bounding_radius + 2e-5);
     }
     searched_end(&searched);
 }
 
-/* The device knows the parts in the way alone, plain C all of them, with the relief behind them. */
+/* The device knows the parts in the way alone. Plain C knows all, with the relief behind them. */
 static size_t compare_smooth(struct bench *bench, uint32_t number)
 {
     struct smooth_trace trace;

@@ -1,6 +1,6 @@
-/* Where rays meet meshes, against a reference in double precision that tries every triangle; that
- * nothing leaks through a closed mesh; that bits do not depend on lanes and neighbours (on devices:
- * test_bits.c). */
+/* Tests where rays meet meshes, against a reference in double precision that tries every triangle.
+ * Tests that nothing leaks through a closed mesh, and that bits do not depend on lanes and
+ * neighbours (on devices: test_bits.c). */
 #include "base/report.h"
 #include "claims.h"
 #include "kernel/mesh_native.h"
@@ -11,14 +11,14 @@
 
 #define RAYS 51200 /* a multiple of 8 */
 
-/* Planes of rays and what they find. */
+/* Planes of rays and of their results. */
 struct flight {
     float input[PROBE_INPUTS][RAYS], output[PROBE_OUTPUTS][RAYS];
 };
 
 static struct flight flight, other_flight;
 
-/* A vector of a ray: three planes, one after the other. */
+/* Returns a vector of a ray from three planes, one after the other. */
 static struct point vector_at(const float (*planes)[RAYS], uint32_t ray)
 {
     const struct point vector = {planes[0][ray], planes[1][ray], planes[2][ray]};
@@ -47,7 +47,7 @@ static struct point vertex(const struct mesh *mesh, size_t triangle, size_t corn
     return point;
 }
 
-/* A ray from a point, to be met beyond it and not beyond `reach`. */
+/* Sets a ray that starts at a point and meets what lies up to `reach`, m, beyond the point. */
 static void set_ray(struct flight *rays, uint32_t ray, struct point from, struct point direction,
                     double reach)
 {
@@ -89,7 +89,7 @@ static void ask(const struct mesh *mesh, struct flight *rays)
                          0, RAYS);
 }
 
-/* Clears the sample. */
+/* Makes a mesh of the sample, and clears the sample. */
 static void prepare(struct mesh_sample *sample, double smooth_angle, struct mesh *mesh)
 {
     static struct report report;
@@ -108,8 +108,8 @@ static struct point axis_of(int axis, double length)
     return along;
 }
 
-/* Random chords through the mesh's sphere; one in four passes close by its middle, one in four runs
- * along an axis. */
+/* Lays random chords through the mesh's sphere. One in four passes close to the sphere's middle,
+ * one in four runs along an axis. */
 static void lay_chords(struct flight *rays)
 {
     for (uint32_t ray = 0; ray < RAYS; ray++) {
@@ -123,12 +123,12 @@ static void lay_chords(struct flight *rays)
 
 /* The nearest triangle in double precision, for the very numbers that the kernel was given. */
 struct reference {
-    double distance; /* HUGE_VAL: none */
-    double margin; /* least distance, in m, by which a triangle before that was met or missed: below
-                      what single precision tells, either answer is right */
+    double distance; /* HUGE_VAL: no hit */
+    double margin; /* least distance, m, of the ray from an edge of a triangle that it met or nearly
+                      met; where single precision cannot tell so little, either answer is right */
 };
 
-/* seen: corners as the ray sees them, z along it. */
+/* Tries one triangle. seen: its corners in the ray's frame, whose z is along the ray, m. */
 static void try_triangle(const struct point seen[3], double minimum, struct reference *best)
 {
     double area = 0.0, distance = 0.0, margin = HUGE_VAL;
@@ -143,7 +143,7 @@ static void try_triangle(const struct point seen[3], double minimum, struct refe
         area += inside;
         distance += inside * seen[corner].z;
         positive += inside > 0.0;
-        margin = fmin(margin, hypot(a.x + share * x, a.y + share * y)); /* from the edge */
+        margin = fmin(margin, hypot(a.x + share * x, a.y + share * y)); /* distance from the edge */
     }
     const bool is_hit = area != 0.0 && (positive == 3 || positive == 0);
     distance /= area;
@@ -176,7 +176,7 @@ static struct reference find_reference(const struct mesh *mesh, const struct fli
     return best;
 }
 
-/* Every third ray, which are of all kinds. */
+/* Compares every third ray. These rays are of all kinds. */
 static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
 {
     uint32_t hits = 0, undecided = 0;
@@ -187,7 +187,7 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
         const bool is_hit = is_met(rays, ray);
         assert_int_equal(is_blocked(rays, ray), is_hit);
         if (expected.margin < 1e-6 * (double)mesh->radius_m) {
-            undecided++; /* so close by an edge that single precision may see either side */
+            undecided++; /* too close to an edge for single precision to tell the side */
             continue;
         }
         if (is_hit != (expected.distance < HUGE_VAL))
@@ -195,7 +195,7 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *rays)
                      expected.distance);
         if (!is_hit)
             continue;
-        /* 3e-7 of rounding across the ray is as much over the cosine along it */
+        /* a rounding of 3e-7 across the ray grows by 1/cosine along it */
         const double cosine = fabs(dot(found_at(rays, PROBE_FACET, ray), direction_of(rays, ray)));
         const double error = fabs((double)rays->output[PROBE_DISTANCE][ray] - expected.distance) /
                              fmax(1.0, 3e-2 / fmax(cosine, 1e-9));
@@ -226,7 +226,7 @@ TEST(test_rays_meet_the_nearest_triangle)
     }
 }
 
-/* A point on a triangle's edge, or its corner; which one goes by the ray's number. */
+/* Returns a point on a triangle's edge, or its corner, chosen by the ray's number. */
 static struct point choose_target(const struct mesh *mesh, uint32_t ray)
 {
     const size_t triangle = ray % mesh->triangle_count;
@@ -236,8 +236,8 @@ static struct point choose_target(const struct mesh *mesh, uint32_t ray)
     return add(scaled(a, 1.0 - share), b, share);
 }
 
-/* Between a point inside a closed mesh and one outside every ray meets it, also one that is aimed
- * exactly at a corner or an edge. */
+/* Every ray between a point inside a closed mesh and one outside meets the mesh, even if the ray is
+ * aimed exactly at a corner or an edge. */
 static void cross_surface(const struct mesh *mesh, struct point inside)
 {
     for (int is_inwards = 0; is_inwards < 2; is_inwards++) {
@@ -274,17 +274,17 @@ TEST(test_nothing_leaks_through_a_closed_mesh)
     }
 }
 
-/* Rays from 400 m, some of them grazing, on a fine sphere against its equation: they meet it
- * between the sphere and the largest one inside. */
+/* Rays from 400 m, some of them grazing, must meet a fine sphere of facets between the true sphere
+ * and the largest sphere inside the facets. */
 TEST(test_a_fine_sphere_is_a_sphere)
 {
     struct mesh_sample sample;
     struct mesh mesh;
     sample_sphere(&sample, 7);
     prepare(&sample, 0.5, &mesh);
-    /* the longest edges: in the middle of an octant the octahedron's are seen from 1/sqrt(3) */
+    /* the longest edges, in the middle of an octant: an octahedron's, seen from 1/sqrt(3) */
     const double edge = sqrt(2.0) / 128.0 * sqrt(3.0);
-    const double sagitta = edge * edge / 6.0; /* how far the middle of a facet lies inside */
+    const double sagitta = edge * edge / 6.0; /* depth of a facet's middle below the sphere */
     for (uint32_t ray = 0; ray < RAYS; ray++)
         set_ray_to(&flight, ray, scaled(random_direction(), 400.0),
                    scaled(random_direction(), ray & 1 ? 0.999 : 0.9), 1e6);
@@ -295,10 +295,10 @@ TEST(test_a_fine_sphere_is_a_sphere)
         const struct point closest = vector_at((const float(*)[RAYS])flight.input, ray);
         const double square = dot(closest, closest);
         if (square > 0.9999 - 2.0 * sagitta)
-            continue; /* may pass beside the inner sphere */
+            continue; /* the ray may pass beside the inner sphere */
         const double cosine = sqrt(1.0 - square);
         const double error = (double)flight.output[PROBE_DISTANCE][ray] + cosine;
-        /* it meets the sphere's inside, later */
+        /* the ray meets the inside of the sphere, so later */
         assert_true(error > -1e-5);
         assert_true(error < cosine - sqrt((1.0 - sagitta) * (1.0 - sagitta) - square) + 1e-5);
         const struct point out = unit(found_at(&flight, PROBE_HIT, ray));
@@ -314,11 +314,11 @@ TEST(test_a_fine_sphere_is_a_sphere)
                   (unsigned)compared, (unsigned)RAYS, worst_smooth, worst_lift);
     assert_true(compared > RAYS / 2);
     assert_true(worst_facet < 2.0 * edge);
-    /* normals at corners are means of facets' that lie about them unevenly by an edge or less;
+    /* a corner's normal is the mean of facets' that lie about it unevenly by an edge or less;
      * single precision's acos near 1 adds 5e-4 */
     assert_true(worst_smooth < 0.1 * edge + 5e-4);
-    /* half the sagitta of the lifted surface (outside the sphere by as much as facets are inside)
-     */
+    /* half the sagitta of the lifted surface, which is as far outside the sphere as facets are
+     * inside */
     assert_true(worst_lift < 1.1 * sagitta);
     mesh_clear(&mesh);
 }
@@ -328,7 +328,7 @@ TEST(test_smooth_normals_show_the_side_that_was_met)
     struct mesh_sample sample;
     struct mesh mesh;
     uint32_t bent = 0;
-    sample_sphere(&sample, 1); /* so coarse that normals differ from facets by 25 degrees */
+    sample_sphere(&sample, 1); /* coarse enough that normals differ from facets by 25 degrees */
     prepare(&sample, 1.5, &mesh);
     lay_chords(&flight);
     ask(&mesh, &flight);
@@ -340,10 +340,11 @@ TEST(test_smooth_normals_show_the_side_that_was_met)
         const struct point f = found_at(&flight, PROBE_FACET, ray);
         const struct point lift =
             add(found_at(&flight, PROBE_LIFTED, ray), found_at(&flight, PROBE_HIT, ray), -1.0);
-        assert_true(-dot(d, f) > -1e-6); /* from outside */
+        assert_true(-dot(d, f) > -1e-6); /* met from outside */
         assert_true(fabs(dot(n, n) - 1.0) < 1e-6);
         assert_true(dot(n, f) > 0.0);
-        /* as unit vectors are: 1e-6; bending by at most 1 % of the ray shortens by as little */
+        /* 1e-6: rounding of unit vectors; a bend adds at most 1 % of the ray, and changes the
+         * normal's length by as little */
         assert_true(-dot(d, n) >= fmin(0.0098, -dot(d, f)) - 1e-6);
         assert_true(dot(f, lift) > -1e-6);
         bent += -dot(d, n) < 0.0101;
@@ -353,9 +354,9 @@ TEST(test_smooth_normals_show_the_side_that_was_met)
     mesh_clear(&mesh);
 }
 
-/* Sets shadow rays from what rays met (lifted, or on the facets) along directions that the smooth
- * normal faces and the facet does not; those of rays without such a direction go nowhere. Returns
- * how many are set. */
+/* Sets shadow rays from the points that rays met (lifted, or on the facets), in directions that the
+ * smooth normal faces and the facet does not. Rays without such a direction go nowhere. Returns the
+ * number of rays that are set. */
 static uint32_t lay_shadow_rays(const struct flight *rays, enum probe_output start,
                                 struct flight *shadows)
 {
@@ -379,7 +380,7 @@ static uint32_t lay_shadow_rays(const struct flight *rays, enum probe_output sta
     return count;
 }
 
-/* A sphere of facets lets sound past wherever the smooth surface does, if it starts lifted. */
+/* Sound that starts lifted passes a sphere of facets wherever it passes the smooth surface. */
 TEST(test_lifted_rays_pass_the_facets)
 {
     struct mesh_sample sample;
@@ -398,13 +399,13 @@ TEST(test_lifted_rays_pass_the_facets)
     print_message("%u shadow rays, blocked %u from facets, %u lifted\n", (unsigned)count,
                   (unsigned)blocked[0], (unsigned)blocked[1]);
     assert_true(count > RAYS / 4);
-    assert_true(blocked[0] > count / 10 * 9); /* all but those that start at an edge */
+    assert_true(blocked[0] > count / 10 * 9); /* all but rays that start at an edge */
     assert_true(blocked[1] < count / 100);
     mesh_clear(&mesh);
 }
 
-/* Half of the rays lie side by side, as in a fan; half are strewn. Some are aimed at corners, where
- * several triangles are equally near. */
+/* Lays half of the rays side by side, as in a fan, and strews the others. Some are aimed at
+ * corners, where several triangles are equally near. */
 static void lay_mixed(const struct mesh *mesh)
 {
     lay_chords(&flight);
@@ -417,7 +418,7 @@ static void lay_mixed(const struct mesh *mesh)
     }
 }
 
-/* Rays with a reach: what lies beyond is not met, at it is. */
+/* Rays meet what lies at the end of their reach, but nothing beyond. */
 TEST(test_reach_ends_at_what_is_met)
 {
     static float nearest[RAYS];
@@ -438,7 +439,7 @@ TEST(test_reach_ends_at_what_is_met)
         assert_int_equal(is_met(&flight, ray), expected);
         assert_int_equal(is_blocked(&flight, ray), expected);
     }
-    /* from the hit on, the next one is farther */
+    /* rays that begin at the hit find the next one farther away */
     memcpy(flight.input[PROBE_MINIMUM], nearest, sizeof nearest);
     for (uint32_t ray = 0; ray < RAYS; ray++)
         maximum[ray] = 1e6f;
@@ -472,7 +473,7 @@ TEST(test_lanes_meet_what_one_ray_meets)
     mesh_clear(&mesh);
 }
 
-/* Every ray along an edge of a triangle, which it sees edge-on. */
+/* Lays every ray along an edge of a triangle, which the ray sees edge-on. */
 static void lay_along_edges(const struct mesh *mesh)
 {
     for (uint32_t ray = 0; ray < RAYS; ray++) {
@@ -483,7 +484,7 @@ static void lay_along_edges(const struct mesh *mesh)
     }
 }
 
-/* Each ray in another place: 7919 is prime and no factor of RAYS. */
+/* Expects rays to find the same in other places. 7919 is prime and no factor of RAYS. */
 static void expect_same_in_any_order(const struct mesh *mesh)
 {
     ask(mesh, &flight);

@@ -1,6 +1,5 @@
-/* The same bits everywhere for echoes of several smooth faces: what a device tallies, at any width
- * and chunking, is what the same kernels give as the C compiler takes them, with the fewest lanes.
- */
+/* Tests that echoes of several smooth faces have the same bits everywhere. At any width and
+ * chunking, a device must tally what the same kernels tally as plain C with the fewest lanes. */
 #include "claims.h"
 
 #include "physics/bench.h"
@@ -20,7 +19,7 @@ static const struct variant variants[] = {
     {"focused, smooth seabed, through layers", SONJECT_COLUMNS_FOCUSED, 1, 1},
 };
 
-/* A plate that leans, a sphere, a torus, half a tube and a box, close to each other. */
+/* Makes a scene of a leaning plate, a sphere, a torus, half a tube and a box, closely placed. */
 static void make_scene(struct bench *bench, const struct variant *variant)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
@@ -79,12 +78,11 @@ static void expect_same(const struct multibounce_sums *a, const struct multiboun
     }
 }
 
-/* The reference, and then the device at the ends of the row of widths: programs take long to
- * compile (see test_bits.c). */
+/* The reference, and then the device at each width. */
 static struct device *devices[1 + BENCH_WIDTHS];
 static size_t device_count;
 
-/* Echoes of one pair; compares them in launches as they come and, where told to, in small ones. */
+/* Compares one pair's echoes in full and, if told to, small launches. Returns their number. */
 static uint64_t compare_pair(struct bench *bench, const struct multibounce_strips *of_part,
                              uint32_t part, const struct image_pair *pair, bool has_small_ones)
 {

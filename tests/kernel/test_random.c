@@ -1,4 +1,4 @@
-/* kernels/random.h and the deviates of image_formation.h. */
+/* Tests kernels/random.h and the deviates of image_formation.h. */
 #include "claims.h"
 
 #include "base/memory.h"
@@ -7,8 +7,7 @@
 
 #define DRAWS 1000000
 
-/* From the known-answer file of the authors' own Random123 distribution, threefry2x32 of 20 rounds.
- */
+/* The answers of threefry2x32 with 20 rounds are in the authors' own Random123 distribution. */
 TEST(test_known_answers)
 {
     static const uint32_t vectors[][6] = {
@@ -44,7 +43,7 @@ TEST(test_uniforms_stay_inside)
     }
 }
 
-/* Chi-square of counts in equal classes, as normal deviates (classes are many). */
+/* Returns chi-square of counts in equal classes as a normal deviate (classes are many). */
 static double chi_square(const uint32_t *counts, int classes, double draws)
 {
     const double expected = draws / classes;
@@ -54,7 +53,7 @@ static double chi_square(const uint32_t *counts, int classes, double draws)
     return (sum - (classes - 1)) / sqrt(2.0 * (classes - 1));
 }
 
-/* 4 standard errors everywhere: what a fair generator passes 15,786 times of 15,787. */
+/* All tolerances are 4 standard errors, which a fair generator passes 15,786 times of 15,787. */
 TEST(test_uniformity)
 {
     for (uint32_t draw = 0; draw < 3; draw++) {
@@ -105,7 +104,7 @@ static double correlation_between(struct source a, struct source b)
         two_uniforms(key_b, ray, b.draw, &p, &q);
         sum += (u - 0.5) * (p - 0.5) + (v - 0.5) * (q - 0.5) + (u - 0.5) * (q - 0.5);
     }
-    /* a term has variance 1/144; in standard errors */
+    /* in standard errors: a term has variance 1/144 */
     return sum / sqrt(3.0 * 100000.0 / 144.0);
 }
 
@@ -135,8 +134,8 @@ TEST(test_streams_are_independent)
     assert_true(fabs(correlation_between(one, one)) > 100.0);
 }
 
-/* The third deviate fills its cells evenly, and
- * goes with neither of the others, whose spare bits it is made of. */
+/* The third deviate fills its cells evenly. It is made of spare bits of the other two, but
+ * correlates with neither. */
 TEST(test_third_uniform)
 {
     const struct random_key key = random_key_of(3, 0, STREAM_CHAIN_RAYS, 7);
@@ -165,8 +164,8 @@ TEST(test_third_uniform)
     assert_true(fabs(with_second) < 4.0 * sqrt(COUNT / 144.0));
 }
 
-/* Unit mean square, circular, exponential intensity (Kolmogorov-Smirnov at the 6e-5 level that 4
- * standard errors mean: 2.27 / sqrt(n)). */
+/* Deviates have unit mean square, are circular, and have exponential intensity, by Kolmogorov and
+ * Smirnov at the 6e-5 level of 4 standard errors: 2.27 / sqrt(n). */
 TEST(test_complex_normal)
 {
     const struct random_key key = random_key_of(3, 0, STREAM_SEABED_SPECKLE, 17);

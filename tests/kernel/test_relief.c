@@ -1,5 +1,5 @@
-/* Rays against a height field: 10^5 of them against an independent solver in double precision, from
- * 50 m and 500 m, down to 2 degrees; the plane's own bits where all is level. */
+/* Tests rays on a height field: 10^5 rays from 50 m and 500 m, down to 2 degrees, against an
+ * independent solver in double precision. Where all is level, bits must be the plane's. */
 #include "base/memory.h"
 #include "claims.h"
 #include "random_rays.h"
@@ -7,10 +7,10 @@
 #include "trace/object_buffer.h"
 
 #define RAYS       100000
-#define HIGHEST    0.7 /* m: nothing here is higher */
-#define WORDS_HEAD 16  /* in front of the relief: where objects would be */
+#define HIGHEST    0.7 /* m, above all heights here */
+#define WORDS_HEAD 16  /* words in front of the relief, where objects would be */
 
-/* What the fan sees of a relief. */
+/* A relief as the fan sees it. */
 struct sea {
     struct relief relief;
     struct fan_record fan;
@@ -24,7 +24,7 @@ static const struct object_record *objects_of(const struct sea *sea)
 
 typedef double height_function(double x, double y);
 
-/* Long-crested ripples, a mound, a pit and what is level, in one. */
+/* Returns a height of long-crested ripples, a mound, a pit and level ground in one. */
 static double varied(double x, double y)
 {
     const double ripples = 0.03 * cos(2.0 * PI * (0.3 * x + 0.95 * y) / 0.4);
@@ -79,7 +79,7 @@ static void sea_clear(struct sea *sea)
     free(sea->words);
 }
 
-/* In double precision, from the single precision that the kernel gets. */
+/* A ray in double precision, from the single precision that the kernel gets. */
 struct line {
     double point[3], direction[3];
 };
@@ -91,9 +91,9 @@ static double clearance(const struct sea *sea, const struct line *line, double t
                          line->point[1] + t * line->direction[1]);
 }
 
-/* Where the line first comes through the surface from above beyond `begin`; INFINITY: nowhere.
- * Between two lines of the grid the clearance is a polynomial of degree 2, known by three values:
- * all crossings of grid lines are listed and sorted, and each piece is solved. */
+/* Returns where the line first comes through the surface from above beyond `begin`; INFINITY:
+ * nowhere. Between two lines of the grid the clearance is a polynomial of degree 2, known by three
+ * values. All crossings of grid lines are listed and sorted, and each piece is solved. */
 static double reference_distance(const struct sea *sea, const struct line *line, double begin)
 {
     const struct relief *relief = &sea->relief;
@@ -122,10 +122,10 @@ static double reference_distance(const struct sea *sea, const struct line *line,
             continue;
         if (fabs(x) >= -low[0] || fabs(y) >= -low[1])
             continue;
-        if (far > begin && far <= a && !is_inside) /* it met the plane before it came here */
+        if (far > begin && far <= a && !is_inside) /* the line met the plane before the grid */
             return far;
         is_inside = true;
-        /* off the grid's own lines, where either cell will do */
+        /* values off the grid's own lines, on which either cell would do */
         const double width = b - a;
         const double values[3] = {clearance(sea, line, a + 1e-9 * width),
                                   clearance(sea, line, middle),
@@ -173,7 +173,7 @@ static struct line line_of(struct vector3 point, struct vector3 direction)
 }
 
 struct errors {
-    double height, distance; /* largest, of hits with a local grazing angle above 3 degrees */
+    double height, distance; /* largest; distances only at local grazing angles above 3 degrees */
     size_t hits, misses, grazed;
 };
 
@@ -207,8 +207,8 @@ static void compare_ray(const struct sea *sea, struct vector3 point, struct vect
         assert_true(lowest_between(sea, &line, first, end) > -5e-6);
 }
 
-/* A ray of a fan from some range: its closest point to the frame's origin and its direction, at a
- * grazing angle of 2 to 70 degrees and any azimuth. */
+/* Draws a ray of a fan from a range: its closest point to the frame's origin and its direction, at
+ * a grazing angle of 2 to 70 degrees and any azimuth. */
 static void fan_ray_from(double range, struct vector3 *point, struct vector3 *direction)
 {
     const double grazing = 0.035 + 1.2 * pow(uniform(0.0, 1.0), 2.0);
@@ -216,7 +216,7 @@ static void fan_ray_from(double range, struct vector3 *point, struct vector3 *di
     const double aim[3] = {6.0 * uniform(0.0, 1.0) - 3.0, 6.0 * uniform(0.0, 1.0) - 3.0,
                            0.3 * uniform(0.0, 1.0) - 0.1};
     const double d[3] = {cos(grazing) * cos(azimuth), cos(grazing) * sin(azimuth), -sin(grazing)};
-    /* from where the sonar is, as a fan has it: through a point of the sea to the closest point */
+    /* a fan's ray goes from the sonar through a point of the sea to its closest point */
     double from[3];
     double along = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -249,15 +249,15 @@ TEST(test_primary_rays)
                       errors.distance);
         assert_true(errors.hits > RAYS / 2);
         assert_true(errors.grazed < RAYS / 1000);
-        /* coordinates up to 6.5 m err by 2^-21 m each, on slopes of 1 and less; a distance by that
-         * over the sine of at least 3 degrees */
+        /* coordinates up to 6.5 m err by 2^-21 m each, on slopes of 1 and less; distances err by as
+         * much over the sine of at least 3 degrees */
         assert_true(errors.height < 3e-6);
         assert_true(errors.distance < 6.5e-5);
     }
     sea_clear(&sea);
 }
 
-/* From points of the surface all around: what leaves it must not meet it again at once. */
+/* Rays that leave points of the surface all around must not meet the surface again at once. */
 TEST(test_rays_from_the_surface)
 {
     struct sea sea;
@@ -274,7 +274,7 @@ TEST(test_rays_from_the_surface)
         assert_true(dot3(normal, direction) < 0.0f);
         assert_true(fabsf(dot3(normal, normal) - 1.0f) < 1e-6f);
         const struct vector3 start = along3(hit, normal, 2.0e-5f);
-        /* straight back is clear */
+        /* the way straight back is clear */
         assert_true(is_clear_of_relief(&sea.fan, objects_of(&sea), start, reversed3(direction),
                                        49.0f, -1) ||
                     -dot3(normal, direction) < 0.02f);
@@ -325,13 +325,13 @@ TEST(test_rays_on_grid_lines)
         /* slopes reach 1.7: coordinates are off by 2^-22 m */
         if (fabs(here) > 3e-6)
             fail_msg("kind %d at row %d, column %d: %g m off", kind, row, column, here);
-        /* what slants may just pass over a crest that it is aimed at */
+        /* a slanting ray may just pass over a crest that it is aimed at */
         assert_true(kind != 0 || fabsf(found - 1.0f) < 3e-6f);
     }
     sea_clear(&sea);
 }
 
-/* Whether all points are at 0 that a place's height and slopes come from. */
+/* Returns whether all points that give a place's height and slopes are at 0. */
 static bool is_level_at(const struct sea *sea, struct vector3 place)
 {
     const struct relief *relief = &sea->relief;
@@ -345,7 +345,7 @@ static bool is_level_at(const struct sea *sea, struct vector3 place)
     return true;
 }
 
-/* All heights 0, and where a mound ends, whatever is next to it: the plane's distances, normals and
+/* Ground at height 0, and level ground next to a mound, has the plane's distances, normals and
  * bits. */
 TEST(test_level_ground_is_the_plane)
 {
@@ -366,7 +366,7 @@ TEST(test_level_ground_is_the_plane)
             assert_true(normal.x == 0.0f && normal.y == 0.0f && normal.z == 1.0f);
             met += hypot((double)place.x, (double)place.y) < 0.9;
         }
-        assert_true(met > 200); /* in blocks that a mound reaches into */
+        assert_true(met > 200); /* hits in blocks that a mound reaches into */
         sea_clear(&sea);
     }
 }
@@ -376,7 +376,7 @@ static double ripples_alone(double x, double y)
     return 0.03 * cos(2.0 * PI * (0.6 * x + 0.8 * y) / 0.4);
 }
 
-/* Normals are those of the smooth surface, not of the cells: 24 points a wavelength. */
+/* Normals are those of the smooth surface, not of the cells. A wavelength has 24 points. */
 TEST(test_normals)
 {
     struct sea sea;
@@ -401,8 +401,8 @@ TEST(test_normals)
         if (facing > 0.01)
             worst = fmax(worst, acos(fmin(1.0, cosine)));
     }
-    /* mixing slopes linearly between points errs by (k step)^2/8 of 0.47, 0.004, and the
-     * differences by (k step)^4/30 of it, less than 1e-4 */
+    /* linear interpolation of slopes up to 0.47 errs by (k step)^2/8 of them, 0.004, and finite
+     * differences by (k step)^4/30 of them, less than 1e-4 */
     print_message("normals are within %.4f rad of the smooth surface's\n", worst);
     assert_true(worst < 0.0045);
     assert_true(worst > 0.0);

@@ -1,19 +1,19 @@
-/* Where rays meet shapes, against polynomials solved in double precision. Rays come
- * from sonars at 50 m and 500 m, many of them grazing. The same bits in all lanes:
- * test_many_objects.c, test_bits.c. */
+/* Tests where rays meet shapes, against polynomials solved in double precision. Rays come from
+ * sonars at 50 m and 500 m, many of them grazing. test_many_objects.c and test_bits.c test that all
+ * lanes have the same bits. */
 #include "claims.h"
 #include "fan.h"
 #include "reference_solids.h"
 #include "scene/placement.h"
 #include "scene/shapes/shape.h"
 
-#define RAYS 16000 /* 20 at each of 800 solids: what fails for one in a hundred is met 8 times */
+#define RAYS 16000 /* 20 at each of 800 solids, so that a fault of 1 % of solids is met 8 times */
 
-/* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
- * outline closer than this may err. */
+/* Rays that pass an outline closer than this may err, m. Positions carry single precision's 6e-8 of
+ * a few metres, some of which add up. */
 #define OUTLINE 3e-6
-/* Of the size: what moving the outline shifts a grazing hit by is sqrt(8 radius OUTLINE), and a
- * larger jump goes to another surface. */
+/* The largest shift of a grazing hit, as a share of the size. Moving the outline shifts the hit by
+ * sqrt(8 radius OUTLINE), and a larger jump goes to another surface. */
 #define GRAZING 0.02
 
 struct solid {
@@ -75,7 +75,7 @@ static struct solid_hit reference_hit(const struct solid *solid, struct point or
     return hit;
 }
 
-/* A point on or near the surface: half of the rays graze it. */
+/* Returns a point on or near the surface. Half of the rays to such points graze the surface. */
 static struct point aim(const struct solid *solid)
 {
     const struct point way = random_direction();
@@ -109,7 +109,7 @@ static void compare(const struct solid *solid, const struct solid_row *row, cons
     const int surely = isfinite(less.distance);
     const double spread = fabs(more.distance - less.distance);
     const double cosine = surely ? fabs(dot(expected.normal, ray->direction)) : 1.0;
-    /* the same outline, and the same surface before and behind it */
+    /* undecided unless the three outlines agree on a hit, and on the surface that is hit */
     if (surely != isfinite(more.distance) || surely != isfinite(expected.distance) ||
         (surely &&
          (spread > 30.0 * OUTLINE / cosine || spread > GRAZING * solid->record.bounding_radius ||
@@ -134,11 +134,11 @@ static void compare(const struct solid *solid, const struct solid_row *row, cons
     }
 }
 
-/* What the tests of this file, and of extents, are asked of. */
+/* Tests of this file, and of extents, go through solid_rows. No shape may lack a row. */
 TEST(test_every_shape_of_the_table_is_tested)
 {
     for (uint32_t shape = 0; shape < SHAPE_PARTS; shape++) {
-        int rows = shape == SHAPE_MESH; /* which has tests of its own */
+        int rows = shape == SHAPE_MESH; /* meshes have tests of their own */
         for (int i = 0; i < solid_row_count; i++)
             rows += solid_rows[i].shape == shape;
         if (rows == 0)
@@ -171,9 +171,9 @@ TEST(test_against_the_reference)
     }
 }
 
-/* Whether a way from where a ray meets a convex object, straight back or any, started as far off
- * the surface as the tracer does (2e-5 m), meets it again; -1: it does not lead outwards, or
- * nothing is met. */
+/* Returns whether a way from the point where a ray meets an object meets the object again. The way
+ * is straight back or random, and starts as far off the surface as the tracer's ways do (2e-5 m).
+ * -1: the way does not lead outwards, or nothing is met. */
 static int meets_itself(const struct object_record *object, const struct ray *ray,
                         bool is_straight_back)
 {
@@ -208,11 +208,11 @@ TEST(test_ways_outwards_meet_hollow_solids_alone_again)
 }
 
 /* Between near hits on one surface the normal turns by at most their distance over the least radius
- * of curvature. A tenth of that radius lengthens the way along the surface by 1e-3 at most. */
+ * of curvature. Within a tenth of that radius the way along the surface is at most 1e-3 longer. */
 TEST(test_surfaces_are_bent_no_more_than_is_said)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
-        /* near its axis, as lib/scene/shapes/shape.h says */
+        /* cones are bent more near the axis, as lib/scene/shapes/shape.h says */
         const int is_bent_more = row->shape == SHAPE_CONE || row->shape == SHAPE_TRUNCATED_CONE;
         double most = 0.0;
         int compared = 0;
@@ -239,7 +239,7 @@ TEST(test_surfaces_are_bent_no_more_than_is_said)
             }
             const struct point way = add(at[1], at[0], -1.0);
             const double distance = sqrt(dot(way, way));
-            const struct point own = turned(&solid.record, at[0]); /* its centre is the origin */
+            const struct point own = turned(&solid.record, at[0]); /* about the solid's centre */
             if (!(distance < near && to_edge > 2.0 * distance) ||
                 (is_bent_more && hypot(own.x, own.y) < radius + distance))
                 continue;
@@ -258,7 +258,7 @@ TEST(test_surfaces_are_bent_no_more_than_is_said)
     }
 }
 
-/* From inside, the way out; through a ring's hole, its other side. */
+/* Rays from inside find the way out, and rays through a ring's hole find its other side. */
 TEST(test_beyond_the_first)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
@@ -288,7 +288,7 @@ TEST(test_beyond_the_first)
     }
 }
 
-/* Rays along and across the axes, or so close that rounding decides. */
+/* Rays run along and across the axes, or so nearly that rounding decides. */
 TEST(test_along_the_axes)
 {
     for (const struct solid_row *row = solid_rows; row < solid_rows + solid_row_count; row++) {
@@ -304,7 +304,7 @@ TEST(test_along_the_axes)
             double p[3];
             for (int k = 0; k < 3; k++)
                 p[k] = k == i % 3 || (i % 100 == 0 &&
-                                      row->shape != SHAPE_CONE) /* its tip has no normal */
+                                      row->shape != SHAPE_CONE) /* a cone's tip has no normal */
                            ? 0.0
                            : uniform(-1.1, 1.1) * solid.record.bounding_radius;
             const struct ray ray =
@@ -313,7 +313,7 @@ TEST(test_along_the_axes)
         }
         print_message("%s along axes: %d hits, %d misses, %d undecided, off by %.2g\n", row->name,
                       worst.hits, worst.misses, worst.undecided, worst.of_size);
-        /* least often a plane is met: a third of the rays hits LW/1.21(L^2 + W^2), 430 +- 17 */
+        /* planes are met least often: LW/1.21(L^2 + W^2) of a third of the rays hit, 430 +- 17 */
         assert_true(worst.hits > RAYS / 45);
         assert_true(worst.of_size < 1e-5 && worst.normal < 1e-3);
     }
@@ -368,8 +368,8 @@ TEST(test_nearest_of_several)
     assert_true(none.object == -1 && none.distance == FAR_AWAY);
 }
 
-/* What the fan's geometry promises, in double: a ray of elevation e through the neighbourhood of
- * the origin, at 500 m as at 5 m. */
+/* The fan's geometry holds in double precision: a ray of elevation e goes through the neighbourhood
+ * of the origin, at 500 m as at 5 m. */
 TEST(test_fan)
 {
     static const double ranges[] = {5.0, 50.0, 500.0};
@@ -394,8 +394,8 @@ TEST(test_fan)
             assert_true(ray.closest.x == 0.25f && ray.direction.x == 0.0f);
             assert_true(fabs(ray.direction.y - direction.y) < 3e-7);
             assert_true(fabs(ray.direction.z - direction.z) < 3e-7);
-            /* offsets of up to 5 m; the depression's own rounding turns the whole fan, which
-             * moves nothing in it, but leaves (1 - sine^2 - cosine^2) range in `closest` here */
+            /* offsets are up to 5 m; the depression's rounding turns the whole fan, which moves
+             * nothing in the fan but leaves (1 - sine^2 - cosine^2) range in `closest` here */
             const double slack = 1e-6 + 1e-7 * range;
             assert_true(fabs(ray.closest.y - closest.y) < slack);
             assert_true(fabs(ray.closest.z - closest.z) < slack);

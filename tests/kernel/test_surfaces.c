@@ -1,5 +1,5 @@
-/* kernels/surface.h and brdf.h against double precision: directions against their
- * density, energies by quadrature over the hemisphere, reflection by complex arithmetic. */
+/* Tests kernels/surface.h and brdf.h against double precision: directions against their density,
+ * energies by quadrature over the hemisphere, and reflection by complex arithmetic. */
 #include "claims.h"
 
 #include <complex.h>
@@ -7,14 +7,14 @@
 #include "kernels/surface.h"
 
 #define SAMPLES          200000
-#define POLAR_CELLS      48  /* from the normal to the horizon */
-#define TURN_CELLS       192 /* round the normal */
+#define POLAR_CELLS      48  /* cells between the normal and the horizon */
+#define TURN_CELLS       192 /* cells round the normal */
 #define CELLS            (POLAR_CELLS * TURN_CELLS)
 #define NODES            8
-#define FURNACE_CELLS    64      /* of either angle */
+#define FURNACE_CELLS    64      /* cells in either angle */
 #define SINGLE_PRECISION 5.97e-8 /* half a unit in the last place of 1 */
 
-/* Of Gauss and Legendre's rule on -1...1, the nodes above 0. */
+/* The nodes above 0 of Gauss and Legendre's rule on -1...1. */
 static const double positive_nodes[NODES / 2] = {0.18343464249564980, 0.52553240991632899,
                                                  0.79666647741362674, 0.96028985649753623};
 static const double positive_weights[NODES / 2] = {0.36268378337836198, 0.31370664587788729,
@@ -33,7 +33,7 @@ static double weight_of(int i)
 /* A generator of its own, so that the one in random.h plays no part. */
 static uint64_t generator = 0x9e3779b97f4a7c15u;
 
-/* In 0...1 without the ends, exact in single precision. */
+/* Returns a number in 0...1 without the ends, exact in single precision. */
 static double random_fraction(void)
 {
     return ((double)(next_random(&generator) >> 41) + 0.5) / 8388608.0;
@@ -44,7 +44,7 @@ static float random_deviate(void)
     return (float)random_fraction();
 }
 
-/* A tilted surface: rows are two directions along it, and its normal. */
+/* A tilted surface. Its rows are two directions along the surface, and the normal. */
 static const double frame[3][3] = {
     {0.8, 0.0, 0.6}, {-0.36, 0.8, 0.48}, {-0.48, -0.6, 0.64}}; /* a rotation, exactly */
 
@@ -76,7 +76,7 @@ static double degrees(double angle)
     return angle * PI / 180.0;
 }
 
-/* The record of a fluid half-space. */
+/* Returns the record of a fluid half-space. */
 static struct surface_record fluid(double density, double speed, double loss)
 {
     const double complex index = (1.0 + loss * I) / speed;
@@ -112,7 +112,7 @@ static struct surface_record rough_kind(int kind)
     return rough(kinds[kind].lambert, kinds[kind].exponent, kinds[kind].albedo, kinds[kind].slope);
 }
 
-/* Whole coverings of rough parts over smooth ones that the limits of a material just allow. */
+/* The number of smooth parts. Rough parts cover them as far as a material's limits just allow. */
 #define SMOOTH_KINDS 6
 
 static struct surface_record over_smooth(int kind, const struct surface_record *rough_part)
@@ -145,7 +145,7 @@ static double complex exact_reflection(const struct surface_record *surface, dou
     return (above - root) / (above + root);
 }
 
-/* |R|^2 and what roughness takes from it. */
+/* Returns the part of |R|^2 that roughness leaves to the mirror. *scattered gets the rest. */
 static double exact_specular(const struct surface_record *surface, double cosine, double *scattered)
 {
     const double modulus = cabs(exact_reflection(surface, cosine));
@@ -156,7 +156,7 @@ static double exact_specular(const struct surface_record *surface, double cosine
 
 struct facet {
     double tilt, half_angle, density; /* cosines; density 1/sr */
-    double condition;                 /* relative error of the density over that of the cosines */
+    double condition; /* relative error of the density over the error of the cosines */
 };
 
 static struct facet exact_facet(struct vector3 one, struct vector3 other, double slope)
@@ -265,7 +265,7 @@ static double density_over_cell(const struct surface_record *surface, struct vec
     return 0.25 * height * width * sum;
 }
 
-/* Cell of a direction, -1 below the surface. */
+/* Returns the cell of a direction, -1 below the surface. */
 static int cell_of(struct vector3 direction)
 {
     const double cosine = component(direction, 2);
@@ -279,7 +279,7 @@ static int cell_of(struct vector3 direction)
            (turn_cell < TURN_CELLS ? turn_cell : 0);
 }
 
-/* Statistic over blocks of block x block cells, those below 20 expected merged. */
+/* Returns the statistic over blocks of block x block cells. Cells below 20 expected are merged. */
 static double chi_square(int block, int *freedom)
 {
     double statistic = 0.0, want = 0.0, have = 0.0, wanted = 0.0, had = 0.0;
@@ -299,7 +299,7 @@ static double chi_square(int block, int *freedom)
                 want = have = 0.0;
             }
         }
-    /* what is left, and all below the surface, are the last group */
+    /* the last group is all that is left, and all below the surface */
     want = SAMPLES - wanted;
     have = SAMPLES - had;
     if (want >= 20.0) {
@@ -337,8 +337,8 @@ static void expect_directions_as_density(const struct surface_record *surface, i
         int freedom;
         const double statistic = chi_square(block, &freedom);
         print_message("; chi square %.1f of %d", statistic, freedom);
-        /* B. Laurent, P. Massart (Ann. Stat. 28, 2000): beyond d + 2 sqrt(d x) + 2 x with a
-         * probability of at most exp(-x); exp(-13.9) < 1e-6 */
+        /* B. Laurent, P. Massart (Ann. Stat. 28, 2000): chi square exceeds d + 2 sqrt(d x) + 2 x
+         * with a probability of at most exp(-x); exp(-13.9) < 1e-6 */
         assert_true(statistic < freedom + 2.0 * sqrt(13.9 * freedom) + 2.0 * 13.9);
     }
     print_message("\n");
@@ -360,7 +360,7 @@ TEST(test_directions)
 
 /* ---- Energy ---- */
 
-/* Integral of f cos(out) over the hemisphere for sound that came at an angle. Turns are dense about
+/* Integrates f cos(out) over the hemisphere for sound that came at an angle. Turns are dense about
  * the specular direction, where the cone is narrow at grazing incidence. */
 static double albedo(const struct surface_record *surface, double angle)
 {
@@ -379,11 +379,11 @@ static double albedo(const struct surface_record *surface, double angle)
         }
         sum += weight_of(i % NODES) * sin(polar) * cos(polar) * ring;
     }
-    /* both sides of the plane of incidence */
+    /* 2: both sides of the plane of incidence */
     return 2.0 * sum * 0.25 * PI * step * PI * step;
 }
 
-/* Of the quadrature: kinks of the shading, and single precision. */
+/* The error of the quadrature, by kinks of the shading and by single precision. */
 #define QUADRATURE 1e-4
 
 static const double furnace_angles[] = {0.0, 10.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9};
@@ -402,7 +402,7 @@ TEST(test_rough_furnace)
             assert_true(found < diffuse + (double)surface.glossy_albedo + QUADRATURE);
             assert_true(found > diffuse - QUADRATURE);
             if (surface.glossy_albedo == 0.0f)
-                assert_true(fabs(found - diffuse) < 1e-6 + 1e-5 * diffuse); /* polynomials */
+                assert_true(fabs(found - diffuse) < 1e-6 + 1e-5 * diffuse); /* exact polynomials */
         }
         print_message("\n");
     }
@@ -453,14 +453,14 @@ TEST(test_reciprocity)
             }
         }
     print_message("there and back differ by at most %.2f roundings\n", worst);
-    /* the product with what the smooth part leaves is formed in another order: 2 roundings each */
+    /* the product with the share left by the smooth part has another order: 2 roundings each */
     assert_true(worst < 6.0);
 }
 
 /* ---- Reflection ---- */
 
-/* Error of R: roundings of its own, and those of s^2 = n^2 - sin^2, which the square root enlarges
- * near the critical angle. A constant has only its rounding. */
+/* Returns the error of R. R has roundings of its own, and those of s^2 = n^2 - sin^2, which the
+ * square root enlarges near the critical angle. A constant has only its rounding. */
 static double reflection_error(const struct surface_record *surface, double cosine)
 {
     if (surface->reflection_kind != REFLECTION_FLUID)
@@ -469,7 +469,7 @@ static double reflection_error(const struct surface_record *surface, double cosi
     const double complex square =
         (double)surface->index_real - 1.0 + cosine * cosine + (double)surface->index_imaginary * I;
     const double error =
-        4.0 * SINGLE_PRECISION * fmax(1.0, fabs((double)surface->index_real)); /* of s^2 */
+        4.0 * SINGLE_PRECISION * fmax(1.0, fabs((double)surface->index_real)); /* error of s^2 */
     const double root_error = error / (cabs(csqrt(square)) + sqrt(error));
     const double sum = cabs(m * cosine + csqrt(square));
     return 2e-6 + 2.0 * m * cosine * root_error / (sum * sum);
@@ -502,7 +502,7 @@ TEST(test_fluid_reflection)
             float real_part, imaginary_part;
             fluid_reflection(&surface, cosine, &real_part, &imaginary_part);
             const double modulus = hypot((double)real_part, (double)imaginary_part);
-            assert_true(modulus < 1.0 + 1e-6); /* nothing is gained */
+            assert_true(modulus < 1.0 + 1e-6); /* no energy is gained */
         }
         print_message("density %g, speed %g, loss %g: off by %.2f of what is allowed\n",
                       fluids[i].density, fluids[i].speed, fluids[i].loss, worst);
@@ -538,7 +538,7 @@ TEST(test_critical_angle)
     const double impedance = 2.231 * 1.2503;
     modulus_at_grazing(&sand, 0.5 * PI, &real_part);
     assert_true(fabs(real_part - (impedance - 1.0) / (impedance + 1.0)) < 2e-6);
-    /* loss takes from total reflection */
+    /* loss weakens total reflection */
     const struct surface_record lossy = fluid(2.231, 1.2503, 0.01638);
     assert_true(modulus_at_grazing(&lossy, 0.9 * critical, &real_part) < 0.97);
 }
@@ -585,7 +585,7 @@ TEST(test_specular_part)
             const double phase = (double)surface.roughness_phase * (double)cosine;
             const double complex exact =
                 exact_reflection(&surface, (double)cosine) * exp(-0.5 * phase * phase);
-            /* R's error, and of the exponential the roundings of its argument */
+            /* error of R, and roundings of the exponential's argument */
             const double error = reflection_error(&surface, (double)cosine) +
                                  SINGLE_PRECISION * (4.0 + 2.0 * phase * phase) * cabs(exact);
             float real_part, imaginary_part;
@@ -606,7 +606,7 @@ TEST(test_specular_part)
     }
 }
 
-/* A sediment's rough part is its own, at every angle, and the specular part gives way to it. */
+/* A sediment's rough part keeps its energy at every angle. The specular part gives way to it. */
 TEST(test_rough_part_apart)
 {
     const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);
@@ -622,7 +622,7 @@ TEST(test_rough_part_apart)
             const double left = specular * (1.0 - PI * 0.05);
             const double found = (double)specular_energy(&surface, (float)cosine);
             const double returned = albedo(&surface, angle);
-            /* the errors of R near the critical angle, and those of the quadrature */
+            /* errors of R near the critical angle, and of the quadrature */
             assert_true(fabs(found - left) < 2.0 * reflection_error(&surface, cosine) + 2e-6);
             assert_true(fabs(returned - PI * 0.05) < 1e-4);
             assert_true(found + returned < 1.0 + 1e-4);

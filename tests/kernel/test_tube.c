@@ -1,9 +1,9 @@
-/* How a thin tube of rays turns the phase where it closes to a line: by -pi/2 at each. */
+/* Tests that a thin tube of rays turns the phase by -pi/2 at each line to which it closes. */
 #include "claims.h"
 #include "tube.h"
 
-/* A tube along z whose sides close at the given distances, m; negative: they open. Both sides may
- * be skew to the axes of the wavefront's curvature. */
+/* Returns a tube along z whose sides close at the given distances, m, or open where negative. The
+ * sides may be skew to the axes of the wavefront's curvature. */
 static struct tube closing_at(float along, float across, int is_skew)
 {
     struct tube tube = {{{1.0f, 0.0f, 0.0f}, {-1.0f / along, 0.0f, 0.0f}},

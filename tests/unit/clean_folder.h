@@ -1,5 +1,5 @@
-/* A fresh folder for each test, and one report and decoder for all, as a context has them. To be
- * included after claims.h. */
+/* A fresh folder for each test, and one report and decoder for all, as a context has them. Include
+ * this header after claims.h. */
 #ifndef SONJECT_TESTS_CLEAN_FOLDER_H
 #define SONJECT_TESTS_CLEAN_FOLDER_H
 
@@ -11,7 +11,7 @@ static struct decoder decoder;
 static const struct report_host host = {.decoder = &decoder};
 static struct report report = {{0}, NULL, &host};
 
-/* The path of a file, valid while eight others are asked for. */
+/* Returns the path of a file in the folder, valid while eight others are asked for. */
 static inline const char *file_in(const char *name)
 {
     static char paths[9][TEMPORARY_CAPACITY + 300];

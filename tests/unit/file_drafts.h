@@ -1,4 +1,4 @@
-/* Small files of every format that holds a swath, in the making. To be included first. */
+/* Drafts of small files of every format that holds a swath. Include this header first. */
 #ifndef SONJECT_TESTS_FILE_DRAFTS_H
 #define SONJECT_TESTS_FILE_DRAFTS_H
 
@@ -53,7 +53,7 @@ static inline void put(struct draft *draft, size_t place, uint64_t number, size_
     number_to_bytes(number, draft->bytes + place, size, false);
 }
 
-/* What every draft holds: 0, 1, 2, 3, 10, 11... or 0.1, 0.2, 0.3, 0.4, 1.1, 1.2... */
+/* Returns a draft's sample: 0, 1, 2, 3, 10, 11... if whole, else 0.1, 0.2, 0.3, 0.4, 1.1, 1.2... */
 static inline double sample_at(bool is_whole, size_t row, size_t column)
 {
     return is_whole ? 10.0 * (double)row + (double)column
@@ -72,7 +72,7 @@ static inline void make_npy(struct draft *draft, int how)
         add_float(draft, sample_at(false, i / COLUMNS, i % COLUMNS));
 }
 
-/* Port, whose samples run from far to near, and starboard, of 16 bits. */
+/* Makes XTF: port, whose samples run from far to near, and starboard, of 16 bits. */
 static inline void make_xtf(struct draft *draft, int how)
 {
     const size_t ping_bytes = 256 + 2 * (64 + 2 * COLUMNS);
@@ -103,7 +103,7 @@ static inline void make_xtf(struct draft *draft, int how)
     }
 }
 
-/* Port and starboard of 16 bits, or pairs of them (how: PAIRS), each ping a message. */
+/* Makes JSF: port and starboard of 16 bits, or pairs of them (how: PAIRS). A ping is a message. */
 static inline void make_jsf(struct draft *draft, int how)
 {
     const size_t pair = how ? 2 : 1;
@@ -130,7 +130,7 @@ static inline void make_jsf(struct draft *draft, int how)
     }
 }
 
-/* As MATLAB numbers the types of elements. */
+/* MATLAB's numbers of the types of elements. */
 enum {
     MAT_INT8 = 1,
     MAT_UINT8 = 2,
@@ -161,7 +161,7 @@ static inline void add_element(struct draft *draft, uint32_t type, const void *b
     add(draft, zeros, (8 - count % 8) % 8);
 }
 
-/* parts: one or two, of rows x columns numbers of the stored type. */
+/* Adds a variable. parts: one or two arrays of rows x columns numbers of the stored type. */
 static inline void add_variable(struct draft *draft, const char *name, uint32_t kind, uint32_t rows,
                                 uint32_t columns, uint32_t type, const void *const *parts)
 {
@@ -178,7 +178,7 @@ static inline void add_variable(struct draft *draft, const char *name, uint32_t 
     put(draft, start + 4, draft->count - start - 8, 4);
 }
 
-/* Bytes of the variable at a place. */
+/* Returns the number of bytes of the variable at a place. */
 static inline size_t variable_bytes(const struct draft *draft, size_t place)
 {
     return 8 + (size_t)number_from_bytes(draft->bytes + place + 4, 4, false);
@@ -194,17 +194,17 @@ static inline void add_compressed(struct draft *draft, const unsigned char *byte
     add(draft, deflated, deflated_bytes);
 }
 
-/* What MATLAB and HDF5 files may be. */
+/* Variants of MATLAB and HDF5 files. */
 enum {
     MATLAB = 1,
     CHUNKS = 2,
     PAIRS = 4,  /* complex numbers */
-    LATEST = 8, /* the format of HDF5 with checksums */
+    LATEST = 8, /* HDF5's format with checksums */
     HDF5_KINDS = 16,
     COMPRESSED = 16
 };
 
-/* A scalar, "img" of doubles, "packed" of doubles that lie in bytes, and a text. */
+/* Makes MATLAB: a scalar, "img" of doubles, "packed" of doubles stored as bytes, and a text. */
 static inline void make_mat(struct draft *draft, int how)
 {
     static const double rate = 48000.0;
@@ -232,7 +232,7 @@ static inline void make_mat(struct draft *draft, int how)
 }
 
 #ifdef HAS_HDF5
-/* A data set of 3 x 4 doubles, or pairs of them. */
+/* Puts a data set of 3 x 4 doubles, or pairs of them. */
 static inline void put_set(hid_t parent, const char *name, int how)
 {
     static const char *const names[2][2] = {{"r", "i"}, {"real", "imag"}};
@@ -266,7 +266,7 @@ static inline void put_set(hid_t parent, const char *name, int how)
     H5Sclose(space);
 }
 
-/* "deep/img" in a group; where is_full, "other" and a link to another file as well. */
+/* Writes "deep/img" in a group and, where is_full, "other" and a link to another file. */
 static inline void write_hdf5(const char *path, int how, bool is_full)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);

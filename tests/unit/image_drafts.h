@@ -1,5 +1,5 @@
-/* Images in the making, and what they must be when they are read: TIFF files of every build that
- * sonject reads, by libtiff, and what it would not write. To be included first. */
+/* Drafts of images, and checks of what is read: TIFF files of every build that sonject reads, made
+ * by libtiff, and files that libtiff would not write. Include this header first. */
 #ifndef SONJECT_TESTS_IMAGE_DRAFTS_H
 #define SONJECT_TESTS_IMAGE_DRAFTS_H
 
@@ -13,7 +13,7 @@
 
 #define ROWS       53
 #define COLUMNS    71
-#define BYTES_MOST 200000 /* of an image or a file */
+#define BYTES_MOST 200000 /* largest size of an image or a file */
 
 static const struct raster_layout grey8 = {ROWS, COLUMNS, 1, PIXEL_UINT8};
 static const struct raster_layout grey16 = {ROWS, COLUMNS, 1, PIXEL_UINT16};
@@ -21,7 +21,7 @@ static const struct raster_layout real32 = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
 static const struct raster_layout complex32 = {ROWS, COLUMNS, 2, PIXEL_FLOAT32};
 static const struct region patch_region = {17, 23, 20, 31};
 
-/* Memory that is valid while thirty others are asked for. */
+/* Returns memory filled with 0, valid while thirty others are asked for. */
 static inline unsigned char *scratch(void)
 {
     static unsigned char all[32][BYTES_MOST];
@@ -51,7 +51,7 @@ static inline size_t pixel_size(const struct raster_layout *layout)
     return layout->channels * pixel_bytes(layout->type);
 }
 
-/* Pixels of a region; noisy, so that compression has to work. */
+/* Returns the pixels of a region, which are noisy so that compression has to work. */
 static inline unsigned char *make_pixels(const struct raster_layout *layout,
                                          const struct region *region, uint32_t seed)
 {
@@ -115,7 +115,7 @@ static inline unsigned char *read_file(const char *path, const struct raster_lay
     return pixels;
 }
 
-/* The file's pixels are those of whole, but in region those of patch (NULL: no patch). */
+/* Expects a file's pixels to be those of whole, but in region those of patch (NULL: no patch). */
 static inline void expect_pixels(const char *path, const struct raster_layout *layout,
                                  const unsigned char *whole, const struct region *region,
                                  const unsigned char *patch)
@@ -157,7 +157,7 @@ struct tiff_build {
     bool is_big, is_big_endian, is_tiled, is_separate, has_second_page;
     uint16_t compression, predictor;
     uint32_t block_rows, block_columns;
-    /* for what is to be refused; 0: as the layout says */
+    /* for files to be refused; 0: as the layout says */
     uint16_t bits, sample_format, photometric, extra_channel, fill_order;
     uint32_t second_page_kind; /* 1: a smaller copy of the first */
 };
@@ -200,7 +200,7 @@ static inline void tiff_set_tags(TIFF *file, const struct tiff_build *build)
     TIFFSetField(file, TIFF_PRIVATE_TAG, TIFF_PRIVATE_TEXT);
 }
 
-/* The pixels of each block, of which those beyond the image are 0. */
+/* Writes the pixels of each block. Pixels beyond the image are 0. */
 static inline void tiff_put_page(TIFF *file, const struct tiff_build *build,
                                  const unsigned char *pixels)
 {
@@ -252,7 +252,7 @@ static inline void build_tiff(const char *path, const struct tiff_build *build, 
     TIFFClose(file);
 }
 
-/* Where the entry of a tag is in the first directory, or the first of its values. */
+/* Returns the place of a tag's entry in the first directory, or of its first value. */
 static inline size_t tiff_place(const unsigned char *bytes, uint16_t tag, bool of_values)
 {
     const bool is_big_endian = bytes[0] == 'M';
@@ -274,7 +274,7 @@ static inline size_t tiff_place(const unsigned char *bytes, uint16_t tag, bool o
     return 0;
 }
 
-/* Makes a tag say another number, of 32 bits (a large file: of 64). */
+/* Makes a tag say another number, of 32 bits (in a BigTIFF file: 64). */
 static inline void tiff_say(unsigned char *bytes, uint16_t tag, uint64_t number)
 {
     const bool is_big_endian = bytes[0] == 'M';

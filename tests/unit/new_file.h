@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
-/* Opens a file to be written that is not the one that was there: a file cut to nothing and written
- * again goes to the disk at once on some file systems, which takes a hundred times as long. */
+/* Opens a new file to be written, in place of one that may be there. On some file systems a file
+ * that is cut to nothing goes to the disk at once, which takes a hundred times as long. */
 static inline FILE *open_new_file(const char *path)
 {
     (void)remove(path);

@@ -7,8 +7,8 @@
 #include "image/synthetic.h"
 #include "scene/scene.h"
 
-/* Its amplitudes, for free(): sinc response of row_width pixels, Gaussian one of a -3 dB width of
- * column_width pixels. shape: of the K distribution, INFINITY: Rayleigh. */
+/* Returns the amplitudes, which the caller frees. Responses: a sinc of row_width pixels, a Gaussian
+ * of a -3 dB width of column_width pixels. shape: of the K distribution; INFINITY: Rayleigh. */
 static inline float *make_plain_seabed(uint32_t rows, uint32_t columns, double shape,
                                        double row_width, double column_width, uint64_t seed)
 {

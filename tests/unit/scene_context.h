@@ -1,4 +1,4 @@
-/* A context that all tests of a program use, and scenes that they set keys of. */
+/* A context that all tests of a program use, and scenes whose keys they set. */
 #ifndef SONJECT_TESTS_UNIT_SCENE_CONTEXT_H
 #define SONJECT_TESTS_UNIT_SCENE_CONTEXT_H
 
@@ -25,7 +25,7 @@ static void set(sonject_scene *scene, const char *key, const char *value)
     EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
 }
 
-/* A scene of a text, as of a file of that name, which may be NULL. */
+/* Reads a scene from a text, as if from the file `path`, which may be NULL. */
 static sonject_scene *read_text(const char *path, const char *text)
 {
     sonject_scene *scene = NULL;

@@ -1,4 +1,4 @@
-/* A fresh folder with one scene file, for the tests of scene files; included after claims.h. */
+/* A fresh folder with one scene file for tests. Include this header after claims.h. */
 #ifndef SCENE_FOLDER_H
 #define SCENE_FOLDER_H
 
@@ -28,7 +28,7 @@ static inline sonject_status read_scene_file(struct report *report, const char *
 #define SOURCE_ROOT "."
 #endif
 
-/* A scene of three lines that lacks nothing, and its lines. */
+/* A complete scene of three lines, and its lines. */
 #define START "sonject: 1\n"
 #define INPUT                                                                                      \
     "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
@@ -38,16 +38,16 @@ static inline sonject_status read_scene_file(struct report *report, const char *
 
 struct scene_folder {
     struct temporary_folder folder;
-    char file[TEMPORARY_CAPACITY + 16]; /* the folder's scene.yaml, the name of every scene here */
+    char file[TEMPORARY_CAPACITY + 16]; /* path of scene.yaml in the folder, where every scene is */
     struct report report;
-    struct report_host host; /* the report's, with the decoder below: one for all readings */
+    struct report_host host; /* the report's host; all readings share the decoder below */
     struct decoder decoder;
-    struct scene scene; /* of the last reading, cleared before the next */
+    struct scene scene; /* scene of the last reading, cleared before the next */
 };
 
-static struct scene_folder *folder; /* of the program's tests */
+static struct scene_folder *folder; /* shared by the program's tests */
 
-/* Set-up and tear-down of a cmocka group. */
+/* Set up and tear down a cmocka group. */
 static inline int make_scene_folder(void **state)
 {
     folder = calloc(1, sizeof *folder);
@@ -69,7 +69,7 @@ static inline int remove_scene_folder(void **state)
     return result;
 }
 
-/* The path of a file of the folder; valid until the next one. */
+/* Returns the path of a file in the folder, valid until the next call. */
 static inline const char *file_in(const char *name)
 {
     return temporary_file(&folder->folder, name);
@@ -85,7 +85,7 @@ static inline void write_scene(const char *text, size_t bytes)
     write_file("scene.yaml", text, bytes);
 }
 
-/* Reads the file that is there. overrides may be NULL if count is 0. */
+/* Reads the folder's scene. overrides may be NULL if count is 0. */
 static inline sonject_status read_scene(const char *const *overrides, size_t count)
 {
     scene_clear(&folder->scene);
@@ -100,7 +100,7 @@ static inline void expect_scene_taken(const char *text)
         fail_msg("refused: %s", folder->report.message);
 }
 
-/* Whatever ends them. */
+/* Counts lines by their ends, LF or CR. */
 static inline size_t lines_of(const char *text, size_t bytes)
 {
     size_t lines = bytes > 0;
@@ -109,7 +109,7 @@ static inline size_t lines_of(const char *text, size_t bytes)
     return lines;
 }
 
-/* Stands for all shapes' words in messages that are expected. */
+/* A character that stands for all shapes' words in expected messages. */
 #define SHAPE_WORDS "\1"
 
 static inline const char *shape_words(void)
@@ -119,7 +119,7 @@ static inline const char *shape_words(void)
     return words + strlen(", ");
 }
 
-/* message: all of what follows the file name, ":2:3: sonar.altitude: ...", in each of its lines. */
+/* Expects a refusal. message: each line after the file name, as ":2:3: sonar.altitude: ...". */
 static inline void expect_scene_refused(const char *text, const char *message)
 {
     char expected[REPORT_CAPACITY] = "";
@@ -138,7 +138,7 @@ static inline void expect_scene_refused(const char *text, const char *message)
         fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
 }
 
-/* Scenes that are refused, and the messages as above. */
+/* A scene that is refused, and its message as above. */
 struct refusal {
     const char *text, *message;
 };
@@ -149,8 +149,8 @@ static inline void expect_all_refused(const struct refusal *wrong, size_t count)
         expect_scene_refused(wrong[i].text, wrong[i].message);
 }
 
-/* One line that names the scene's file, the place and key, ":6:18: objects[0].mesh.file", another
- * file and what is wrong with it. */
+/* Expects a message of one line. It names the scene's file, the place and key, ":6:18:
+ * objects[0].mesh.file", another file, and what is wrong with the other file. */
 static inline void expect_bad_file(const char *text, const char *key, const char *name,
                                    sonject_status status, const char *what)
 {
@@ -164,7 +164,7 @@ static inline void expect_bad_file(const char *text, const char *key, const char
         fail_msg("'%s' is not '%s... %s ... %s'", message, place, name, what);
 }
 
-/* The text of an example scene, its end marked by a 0, for free(). name: "demo". */
+/* Returns an example scene's text, such as that of "demo", and a 0. The caller frees it. */
 static inline char *example_scene(const char *name, size_t *bytes)
 {
     char path[TEMPORARY_CAPACITY];

@@ -1,5 +1,5 @@
-/* Every key of scene files: a value for it, where that must arrive, and what its section needs
- * then. */
+/* Cases for every key of scene files: a value, the place where it must arrive, and what else the
+ * key's section then needs. */
 #ifndef SCENE_KEYS_H
 #define SCENE_KEYS_H
 
@@ -28,8 +28,8 @@ static const char small[] = "sonject: 1\n"
                             "  - {shape: sphere, diameter: 0.5 m}\n";
 static const char file[] = "sonject: 1\ninput:\n  path: swath.tif\n  " GEOMETRY ARRAY "}\n";
 
-/* What the scene of a key is, the small one where no text is, and what else its section then needs;
- * of the first row whose path the key's begins with. */
+/* The scene of a key (the small one where text is NULL), and what else the key's section then
+ * needs. A key takes the first row whose path its own path begins with. */
 #define RELIEF(feature) "seabed.relief=[{" feature "}]"
 #define HEIGHTS         SOURCE_ROOT "/tests/unit/heights.png"
 #define ARRAYS          SOURCE_ROOT "/tests/unit/heights.mat" /* two arrays of 2 x 3 bytes */
@@ -95,11 +95,11 @@ enum type {
     TYPE_U64,
     TYPE_BOOL,
     TYPE_TEXT, /* an array of characters */
-    TYPE_PATH, /* a pointer to them */
+    TYPE_PATH, /* a pointer to characters */
     TYPE_NOTHING
 };
 
-/* The scene or, of a list of it, the first entry. */
+/* Structures that values arrive in: the scene, and first entries of its lists. */
 enum structure {
     OF_SCENE,
     OF_OBJECT,
@@ -116,9 +116,9 @@ static const struct key_case {
     const char *value;
     enum type type;
     enum structure structure;
-    size_t offset; /* in that structure */
+    size_t offset; /* bytes from the structure's start */
     double number;
-    const char *other; /* NULL: what all of its section need */
+    const char *other; /* NULL: as the row of bases says */
 } cases[] = {
 #define MEMBER_OF(where, of, type, member) TYPE_##type, where, .offset = offsetof(of, member)
 #define S(type, member)                    MEMBER_OF(OF_SCENE, struct scene, type, member)
@@ -132,7 +132,7 @@ static const struct key_case {
         .offset = (index) * sizeof(struct water_layer) + offsetof(struct water_layer, member)
 #define NOTHING TYPE_NOTHING, .offset = 0
     {"sonject", "1", NOTHING},
-    /* what these two do: test_scene_bands.c */
+    /* test_scene_bands.c tests these two */
     {"band", "high", NOTHING},
     {"bands", "{low: {}}", NOTHING, .other = "band=low"},
     {"input.path", "swath-2.tif", S(PATH, input_path)},
@@ -222,7 +222,7 @@ static const struct key_case {
     {"medium.reference_sound_speed", "1490 m/s", S(DOUBLE, medium.reference_sound_speed_mps),
      1490.0},
     {"medium.absorption", "0.03 dB/m", S(DOUBLE, medium.absorption_db_per_m), 0.03},
-    /* how these four become an absorption: test_scene_medium.c */
+    /* test_scene_medium.c tests the absorption that these four give */
     {"medium.absorption.temperature", "12 C", NOTHING},
     {"medium.absorption.salinity", "35", NOTHING},
     {"medium.absorption.depth", "20 m", NOTHING},
@@ -405,7 +405,7 @@ static const struct key_case {
      SONJECT_REFLECTION_FLUID},
 };
 
-/* All keys, for json_decref. */
+/* Returns all keys, for json_decref. */
 static inline json_t *list_keys(void)
 {
     struct report report = {{0}, NULL, NULL};
@@ -417,7 +417,7 @@ static inline json_t *list_keys(void)
     return keys;
 }
 
-/* What is said of a key; "" for null. */
+/* Returns a text that is said of a key; "" for null. */
 static inline const char *text_of(const json_t *key, const char *what)
 {
     const char *text = json_string_value(json_object_get(key, what));
@@ -459,7 +459,7 @@ static inline const void *structure_of(const struct scene *scene, const struct k
     return structures[key->structure];
 }
 
-/* An entry of each list that a path goes through: the second layer, the first of all others. */
+/* Writes an override, with an index for each list of its path: the second layer, else the first. */
 static inline void write_override(char *override, size_t capacity, const struct key_case *key,
                                   const char *value)
 {
@@ -472,7 +472,7 @@ static inline void write_override(char *override, size_t capacity, const struct 
     snprintf(override + length, capacity - length, "=%s", value);
 }
 
-/* The row of bases; NULL: none. */
+/* Returns a key's row of bases; NULL: none. */
 static inline const struct base *base_of(const struct key_case *key)
 {
     char path[100];
@@ -483,8 +483,8 @@ static inline const struct base *base_of(const struct key_case *key)
     return NULL;
 }
 
-/* Whether a key has a case, or a row that another key's section has alike: parts those of objects,
- * pits those of mounds. */
+/* Returns whether a key has a case, or shares one with a like section: parts with objects, pits
+ * with mounds. */
 static inline bool has_case(const char *path)
 {
     static const char *const alike[][2] = {{"objects[].parts[].", "objects[]."},

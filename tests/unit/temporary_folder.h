@@ -1,4 +1,4 @@
-/* A fresh folder for files that tests write. To be included after cmocka.h. */
+/* A fresh folder for files that tests write. Include this header after cmocka.h. */
 #ifndef TEMPORARY_FOLDER_H
 #define TEMPORARY_FOLDER_H
 
@@ -15,10 +15,10 @@
 
 struct temporary_folder {
     char path[TEMPORARY_CAPACITY];
-    char file[TEMPORARY_CAPACITY + 300]; /* what temporary_file() made last */
+    char file[TEMPORARY_CAPACITY + 300]; /* path that temporary_file() made last */
 };
 
-/* Whether it was made. */
+/* Makes a folder, and returns whether it was made. */
 static inline bool open_temporary_folder(struct temporary_folder *folder)
 {
     const char *temporary = getenv("TMPDIR");
@@ -44,7 +44,7 @@ static inline int count_entries(const char *path)
     return count;
 }
 
-/* A folder with all that is in it; 0, or else if it is not there. */
+/* Removes a folder with all that is in it. Returns 0, or nonzero if it is not there. */
 static inline int remove_folder(const char *folder)
 {
     char path[TEMPORARY_CAPACITY + 300];
@@ -65,7 +65,7 @@ static inline int close_temporary_folder(const struct temporary_folder *folder)
     return remove_folder(folder->path);
 }
 
-/* Set-up and tear-down of a cmocka test; *state is the struct temporary_folder. */
+/* Set up and tear down a cmocka test. *state is the struct temporary_folder. */
 static inline int make_temporary_folder(void **state)
 {
     struct temporary_folder *folder = calloc(1, sizeof *folder);
@@ -82,14 +82,14 @@ static inline int remove_temporary_folder(void **state)
 
 #define IN_FOLDER(name) TEST_WITH(name, make_temporary_folder, remove_temporary_folder)
 
-/* folder/name, valid until the next call. */
+/* Returns folder/name, valid until the next call. */
 static inline const char *temporary_file(struct temporary_folder *folder, const char *name)
 {
     snprintf(folder->file, sizeof folder->file, "%s/%s", folder->path, name);
     return folder->file;
 }
 
-/* The whole of a file, for free(). */
+/* Returns a whole file with a 0 behind it. The caller frees the copy. */
 static inline unsigned char *bytes_of_file(const char *path, size_t *count)
 {
     FILE *file = fopen(path, "rb");

@@ -1,4 +1,4 @@
-/* The absorption of sea water. */
+/* Tests the absorption of sea water. */
 #include "claims.h"
 
 #include <sonject/scene.h>
@@ -22,7 +22,7 @@ static void expect_near(double frequency, struct water water, double expected, d
                  water.temperature, water.salinity, water.depth, water.ph, value, expected);
 }
 
-/* As every handbook has it: about 1, 34 and 100 dB/km; given in one or two digits. */
+/* Every handbook has about 1, 34 and 100 dB/km, in one or two digits. */
 TEST(test_well_known_values)
 {
     const struct water sea = {10.0, 35.0, 0.0, 8.0};
@@ -31,9 +31,9 @@ TEST(test_well_known_values)
     expect_near(400e3, sea, 100e-3, 0.05);
 }
 
-/* Ainslie and McColm's simplification (J. Acoust. Soc. Am. 103, 1998, 1671), in dB/m; its authors
- * state that it is within 10 % of Francois and Garrison's where one of temperature, salinity, depth
- * and pH departs from 10 C, 35, 0 m, 8. */
+/* Returns Ainslie and McColm's simplification (J. Acoust. Soc. Am. 103, 1998, 1671), dB/m. Its
+ * authors state that it is within 10 % of Francois and Garrison's formula where one of temperature,
+ * salinity, depth and pH departs from 10 C, 35, 0 m, 8. */
 static double simplified(double frequency_hz, struct water water)
 {
     const double f = frequency_hz / 1e3, square = f * f;
@@ -63,8 +63,8 @@ TEST(test_within_ten_percent_of_the_simplified_formula)
             expect_near(frequencies[j], waters[i], simplified(frequencies[j], waters[i]), 0.1);
 }
 
-/* The papers' formula once more, in Hz and seconds: a relaxation absorbs most per wavelength, half
- * its strength A f_r per cycle at f_r, and alpha = A f_r / (1 + (f_r / f)^2). */
+/* Returns the papers' formula once more, in Hz and seconds. A relaxation absorbs most per
+ * wavelength at f_r, half its strength A f_r per cycle, and alpha = A f_r / (1 + (f_r / f)^2). */
 static double in_hertz(double frequency, struct water water)
 {
     const double t = water.temperature, s = water.salinity, d = water.depth;
@@ -84,7 +84,7 @@ static double in_hertz(double frequency, struct water water)
            of_water * frequency * frequency;
 }
 
-/* 1e-12: some hundred roundings of 1e-16, among them exponentials of arguments up to 20. */
+/* Tolerance 1e-12: some hundred roundings of 1e-16, also by exponentials of arguments up to 20. */
 TEST(test_the_papers_formula)
 {
     static const double temperatures[] = {-2.0, 4.0, 13.0, 20.0, 20.5, 30.0};

@@ -1,4 +1,4 @@
-/* What campaigns are drawn from: distributions against their closed forms, permutations, shares,
+/* Tests what campaigns draw from: distributions against their closed forms, permutations, shares,
  * and places for images. */
 #include "base/memory.h"
 #include "base/text.h"
@@ -19,7 +19,7 @@ static void read_text_of(const char *text, struct distribution *distribution)
     tree_clear(&tree);
 }
 
-/* Mean and variance of the values that text draws, which must follow within five standard errors;
+/* Expects the values that text draws to have a mean and a variance, within five standard errors.
  * fourth: the distribution's fourth central moment over its variance squared. */
 static void check_moments(const char *text, double mean, double variance, double fourth)
 {
@@ -41,7 +41,7 @@ static void check_moments(const char *text, double mean, double variance, double
 TEST(test_moments_are_those_of_the_distributions)
 {
     check_moments("{uniform: [-2 cm, 4 cm]}", 1.0, 3.0, 1.8);
-    /* mean (b - a) / ln(b / a), mean square (b^2 - a^2) / (2 ln(b / a)) */
+    /* mean: (b - a) / ln(b / a), mean square: (b^2 - a^2) / (2 ln(b / a)) */
     const double log_mean = 9.0 / log(10.0);
     check_moments("{log_uniform: [1, 10]}", log_mean, 49.5 / log(10.0) - log_mean * log_mean, 2.46);
     check_moments("{normal: {mean: 3 dB, deviation: 2 dB}}", 3.0, 4.0, 3.0);
@@ -99,7 +99,7 @@ TEST(test_permutations_hit_all_once)
             assert_int_equal(hits[to]++, 0);
             fixed += to == i;
         }
-        /* one in the mean, so more than eight in less than one case in 10^5 */
+        /* one is fixed in the mean, more than eight in less than one case in 10^5 */
         assert_true(count == 1 || fixed < 9);
     }
 }
@@ -114,7 +114,7 @@ TEST(test_strata_hold_one_each)
         assert_int_equal(hits[(int)(u * 1000)]++, 0);
         products += (u - 0.5) * (v - 0.5);
     }
-    /* of independent axes: variance 1/144 each */
+    /* the axes are independent: variance 1/144 each */
     assert_true(fabs(products / 1000) < 5.0 / 12.0 / sqrt(1000));
 }
 
@@ -134,7 +134,7 @@ TEST(test_shares_are_whole_and_add_up)
     }
 }
 
-/* Whether a chip at that place keeps so many pixels from the box. */
+/* Returns whether a chip at a place keeps the campaign's clearance from the box. */
 static bool is_clear(const struct campaign *campaign, const struct region *box, uint64_t row,
                      uint64_t column)
 {
@@ -144,12 +144,12 @@ static bool is_clear(const struct campaign *campaign, const struct region *box, 
            column >= box->first_column + box->columns + campaign->clearance;
 }
 
-/* quality: of a JPEG, whose images begin at blocks; 0: of no JPEG. */
+/* Checks places for images. quality: of a JPEG, whose images begin at blocks; 0: no JPEG. */
 static void check_places(int quality)
 {
     struct report report = {{0}, NULL, NULL};
     struct region boxes[] = {{25, 40, 5, 7}, {0, 0, 2, 2}, {58, 0, 99, 3}};
-    struct avoided_box avoided[] = {{{0, 0, 0, 0}, {6.25, 7.25}, {40.0, 43.0}}, /* the first */
+    struct avoided_box avoided[] = {{{0, 0, 0, 0}, {6.25, 7.25}, {40.0, 43.0}}, /* boxes[0] in m */
                                     {boxes[1], {NAN, NAN}, {NAN, NAN}},
                                     {boxes[2], {NAN, NAN}, {NAN, NAN}}};
     struct swath_plan swath;
@@ -167,15 +167,15 @@ static void check_places(int quality)
     campaign.edge = 1;
     campaign.clearance = 3;
     campaign.has_range = true;
-    campaign.slant_range_m[0] = 26.0; /* columns 12, where the middle is that of a chip at 4... */
-    campaign.slant_range_m[1] = 52.0; /* ...and 64 */
+    campaign.slant_range_m[0] = 26.0; /* column 12, the middle of a chip at 4 */
+    campaign.slant_range_m[1] = 52.0; /* column 64, the middle of a chip at 56 */
     swath.layout.rows = 60;
     swath.layout.columns = 90;
     swath.avoid = avoided;
     swath.avoid_count = 3;
     swath.jpeg_quality = quality;
     for (int i = 0; i < 60; i++)
-        altitudes[i] = i < 40 ? 10.0 : 30.0; /* there the seabed begins at column 20 */
+        altitudes[i] = i < 40 ? 10.0 : 30.0; /* at 30 m the seabed begins at column 20 */
     assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry, altitudes, true),
                      SONJECT_OK);
     for (int i = 0; i < 200; i++)

@@ -1,5 +1,5 @@
-/* Labels of contacts: each format, as others and as sonject itself write it, what highlight and
- * shadow of one contact are, and labels that are wrong. Images are of 30 rows and 40 columns. */
+/* Tests labels of contacts: each format, as others and sonject itself write it, highlights and
+ * shadows of one contact, and wrong labels. Images have 30 rows and 40 columns. */
 #include <sys/stat.h>
 
 #include "base/report.h"
@@ -12,7 +12,7 @@
 #define ROWS_OF_IMAGE    30
 #define COLUMNS_OF_IMAGE 40
 
-/* All labels and images of a test are in a folder of its own. */
+/* Writes a text into the test's own folder, which holds all labels and images. */
 static void put(const char *name, const char *text)
 {
     write_bytes(file_in(name), text, strlen(text));
@@ -25,7 +25,7 @@ static void put_image(const char *name)
     EXPECT_OK(&report, raster_format_write(&report, file_in(name), &layout, NULL, 0, pixels));
 }
 
-/* name: of a file; "": the folder. */
+/* Reads labels. name: of a file; "": the folder. */
 static sonject_status read_set(const char *name, uint32_t part, struct contact_set *set)
 {
     const struct contact_choice choice = {.part = part};
@@ -34,7 +34,7 @@ static sonject_status read_set(const char *name, uint32_t part, struct contact_s
 }
 
 struct expected {
-    const char *image; /* the end of its path */
+    const char *image; /* end of the image's path */
     uint32_t part;
     sonject_box box;
 };
@@ -64,7 +64,7 @@ static void expect_contacts(const char *name, uint32_t part, const struct expect
     assert_null(set.contacts);
 }
 
-/* message: all of it, with % for the folder. */
+/* Expects a refusal. message: all of it, with % for the folder. */
 static void expect_refused(const char *name, const char *message)
 {
     struct contact_set set;
@@ -79,7 +79,7 @@ static void expect_refused(const char *name, const char *message)
         fail_msg("the message is\n%s\nand not\n%s", report.message, expected);
 }
 
-/* A folder within a fresh one, since images are looked for beside it, too. */
+/* Makes a folder within a fresh one, since images are looked for beside the folder, too. */
 static int make_labels_folder(void **state)
 {
     if (begin(state) != 0)
@@ -100,7 +100,7 @@ struct wrong {
     const char *text, *message;
 };
 
-/* Each in a file, and what is read: that, or "", the folder. */
+/* Writes each wrong text to a file. read: the file, or "" for the folder. */
 static void expect_all_refused(const char *file, const char *read, const struct wrong *wrong,
                                size_t count)
 {
@@ -221,7 +221,7 @@ WITH_LABELS(test_tables_that_are_wrong)
 {
 #define T "image,row,column,rows,columns,part\n"
     static const struct wrong wrong[] = {
-        /* what is wrong with any table: test_profile_table.c */
+        /* test_profile_table.c tests the mistakes of any table */
         {T, "%/l.csv: holds no contacts"},
         {"image,row,column,rows,part\n",
          "%/l.csv:1: columns: there is no such column; there must be image, row, column, rows, "
@@ -350,7 +350,7 @@ WITH_LABELS(test_yolo_that_is_wrong)
                    ".txt (YOLO) or .xml (VOC)");
 }
 
-/* Labels in data/labels/train, with images in data/images/train, or elsewhere about them. */
+/* Labels are in data/labels/train, with images in data/images/train, or elsewhere about them. */
 WITH_LABELS(test_where_images_are_looked_for)
 {
     static const char *const folders[] = {"labels",           "labels/train", "labels/train/images",
@@ -440,7 +440,7 @@ WITH_LABELS(test_voc_that_is_wrong)
     expect_refused("", "%/a.xml:1: more text than an annotation has in /annotation/filename");
 }
 
-/* ---- What sonject writes itself. */
+/* ---- Labels that sonject itself writes. */
 
 WITH_LABELS(test_own_labels_are_read_as_they_were_written)
 {
@@ -473,7 +473,7 @@ WITH_LABELS(test_own_labels_are_read_as_they_were_written)
         EXPECT_OK(&report, class_names_take(&classes, &report, objects[i].class_name,
                                             &contact->class_number));
         if (i == CONTACTS)
-            break; /* nothing is seen of it */
+            break; /* nothing of this contact is seen */
         contact->box = boxes[i];
         contact->pixels = 1;
         expected[i] =
@@ -502,7 +502,7 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
     } cases[] = {
         {H "5,10,4,3\n" S "4,13,6,9\n", 1, {{"", LABELLED_BOTH, {4, 10, 6, 12}}}},
         {S "4,13,3,9\n" H "5,10,14,3\n", 1, {{"", LABELLED_BOTH, {4, 10, 15, 12}}}},
-        /* a shadow that has the highlight in it; one that begins where the other ends */
+        /* highlights that begin in a shadow; one that begins where the shadow ends */
         {S "4,13,3,9\n" H "5,14,1,10\n", 1, {{"", LABELLED_BOTH, {4, 13, 3, 11}}}},
         {S "4,13,3,9\n" H "5,21,1,1\n", 1, {{"", LABELLED_BOTH, {4, 13, 3, 9}}}},
         {S "4,13,3,9\n" H "5,22,1,1\n",
@@ -519,14 +519,14 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
          {{"", LABELLED_BOTH, {4, 10, 3, 3}},
           {"", LABELLED_SHADOW, {4, 13, 3, 9}},
           {"/b.npy", LABELLED_HIGHLIGHT, {4, 10, 3, 3}}}},
-        /* one behind the other; one beside the other, whose rows overlap */
+        /* one contact behind the other; one beside the other, with overlapping rows */
         {S "4,34,4,6\n" H "4,10,4,4\n" S "4,14,4,10\n" H "4,30,4,4\n",
          2,
          {{"", LABELLED_BOTH, {4, 10, 4, 14}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
         {S "4,14,6,6\n" S "8,14,6,6\n" H "9,10,5,4\n" H "4,10,5,4\n",
          2,
          {{"", LABELLED_BOTH, {4, 10, 6, 10}}, {"", LABELLED_BOTH, {8, 10, 6, 10}}}},
-        /* the rows' middles tell; what is of other rows stands in nobody's way */
+        /* the middles of rows decide; parts in other rows do not matter */
         {S "4,14,4,6\n" S "5,14,4,6\n" H "6,10,2,4\n",
          2,
          {{"", LABELLED_SHADOW, {4, 14, 4, 6}}, {"", LABELLED_BOTH, {5, 10, 4, 10}}}},
@@ -536,11 +536,11 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
         {H "4,10,3,3\n" S "2,13,2,9\n" S "4,20,3,9\n",
          2,
          {{"", LABELLED_SHADOW, {2, 13, 2, 9}}, {"", LABELLED_BOTH, {4, 10, 3, 19}}}},
-        /* one contact with its highlight's rows first, another with its shadow's */
+        /* one contact's rows begin with the highlight, another's with the shadow */
         {H "4,10,9,3\n" S "12,13,3,9\n" S "3,33,9,3\n" H "11,30,3,3\n",
          2,
          {{"", LABELLED_BOTH, {3, 30, 11, 6}}, {"", LABELLED_BOTH, {4, 10, 11, 12}}}},
-        /* a shadow is nearest to a highlight that has a nearer one, and keeps the one left */
+        /* a shadow is nearest to a highlight that has a nearer one, and keeps the one left over */
         {S "4,20,4,12\n" H "4,30,4,4\n" S "4,34,4,6\n",
          2,
          {{"", LABELLED_SHADOW, {4, 20, 4, 12}}, {"", LABELLED_BOTH, {4, 30, 4, 10}}}},
@@ -562,7 +562,7 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
 
 /* ---- Chosen classes. */
 
-/* What was noted last. */
+/* The line that was noted last. */
 static char noted[400];
 
 static void keep_note(void *user, uint32_t level, const char *line)
@@ -572,7 +572,7 @@ static void keep_note(void *user, uint32_t level, const char *line)
     snprintf(noted, sizeof noted, "%s", line);
 }
 
-/* From each format the mine's label alone, though the boulder's image is not there. */
+/* Each format gives the mine's label alone, though the boulder's image is not there. */
 WITH_LABELS(test_labels_of_chosen_classes_are_read)
 {
     static const char *const names[] = {"nothing", "mine"};

@@ -1,4 +1,4 @@
-/* Edges in speckle against what drew them, and contacts that are looked for in an image. */
+/* Tests edges in speckle against the drawn ones, and the search for contacts in an image. */
 #include "claims.h"
 #include "measure/contact_edges.h"
 #include "measure/contacts.h"
@@ -10,7 +10,7 @@
 
 static struct report report;
 static uint64_t random_state;
-static double means[PIXELS]; /* of a profile */
+static double means[PIXELS]; /* mean intensities of a profile */
 static const double lobe_bias[PIXELS];
 
 static double draw(void)
@@ -18,7 +18,7 @@ static double draw(void)
     return ((double)(next_random(&random_state) >> 11) + 0.5) * 0x1p-53;
 }
 
-/* Mean of n exponential values of mean 1. */
+/* Returns the mean of n exponential values of mean 1. */
 static double speckle(int n)
 {
     double sum = 0.0;
@@ -32,7 +32,7 @@ static double share_behind(double distance, double deviation)
     return 0.5 * erfc(-distance / (sqrt(2.0) * deviation));
 }
 
-/* Mean and spread of (measured - true) over the error that each measure states. */
+/* Mean and spread of (measured - true) over the stated error, as sums. */
 struct pulls {
     double sum, squares, offset;
     int count;
@@ -47,9 +47,9 @@ static void add_pull(struct pulls *pulls, const struct profile_edge *edge, doubl
     pulls->count++;
 }
 
-/* Errors are what they say: over DRAWS edges the spread of pulls is known to 1/sqrt(2 DRAWS) = 4 %.
- * Likelihoods are no normal ones; 30 % are allowed for that. Soft
- * edges fit sharp steps too if they lie further out, by a fraction of a pixel. */
+/* Expects stated errors to be right. Over DRAWS edges the spread of pulls is known to 1/sqrt(2
+ * DRAWS) = 4 %; 30 % are allowed, as likelihoods are not normal. Soft edges also fit sharp steps
+ * that lie further out by a fraction of a pixel. */
 static void expect_pulls(const char *what, const struct pulls *pulls)
 {
     const double spread = sqrt(pulls->squares / pulls->count);
@@ -61,7 +61,7 @@ static void expect_pulls(const char *what, const struct pulls *pulls)
         fail_msg("%s: edges are off by %.2f pixels on average", what, offset);
 }
 
-/* From a highlight of levels that come and go to a shadow, all through a point response. */
+/* Profiles go from a highlight of varying levels to a shadow, all through a point response. */
 TEST(test_ends_in_speckle)
 {
     const double deviation = 0.42;
@@ -81,7 +81,7 @@ TEST(test_ends_in_speckle)
     expect_pulls("ends", &pulls);
 }
 
-/* From a shadow to the seabed, through penumbras of several widths. */
+/* Profiles go from a shadow to the seabed, through penumbras of several widths. */
 TEST(test_steps_in_speckle)
 {
     const double widths[2] = {0.42, 2.5};
@@ -105,8 +105,8 @@ TEST(test_steps_in_speckle)
     }
 }
 
-/* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
- * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.c). */
+/* Six samples a pixel show twice the level in the first third. Where there is one level, a
+ * likelihood ratio of e^10 comes up once in some 200 (see contact_ruler.c). */
 TEST(test_changes_in_shadows)
 {
     const struct profile profile = {means, lobe_bias, PIXELS, 6.0, 0.42};
@@ -128,7 +128,7 @@ TEST(test_changes_in_shadows)
     expect_pulls("changes", &pulls);
 }
 
-/* All dark, all lit, nothing but zeros, and a single pixel. */
+/* Profiles are all dark, all lit, nothing but zeros, or a single pixel. */
 TEST(test_profiles_without_an_edge)
 {
     memset(means, 0, sizeof means);
@@ -147,9 +147,9 @@ TEST(test_profiles_without_an_edge)
 
 static float intensity[ROWS * COLUMNS];
 static struct contact_place places[10];
-static size_t left; /* of what was looked for last */
+static size_t left; /* contacts that the last search left */
 
-/* A bright rectangle with a shadow behind it. */
+/* Adds a bright rectangle with a shadow behind it. */
 static void add_contact(size_t row, size_t column, size_t rows, float level, size_t shadow)
 {
     for (size_t i = row; i < row + rows; i++)
@@ -164,7 +164,7 @@ static void fill_with_speckle(uint64_t seed)
         intensity[i] = (float)speckle(1);
 }
 
-/* Fills places, and left. */
+/* Looks for contacts, and fills places and left. Returns the number of places. */
 static size_t find(double contrast, size_t most)
 {
     struct contact_image image;
@@ -184,10 +184,9 @@ static size_t find(double contrast, size_t most)
     return count;
 }
 
-/* Four contacts, the brightest first. The fifth lies in the first one's shadow, the sixth is
- * fainter than what is asked for. Half of the image is 20 dB brighter: contrasts are against what
- * is around.
- */
+/* Four contacts are found, the brightest first. The fifth lies in the first one's shadow, and the
+ * sixth is fainter than asked for. Half of the image is 20 dB brighter, since contrasts are against
+ * the surroundings. */
 TEST(test_contacts_are_found)
 {
     fill_with_speckle(3);
@@ -214,7 +213,7 @@ TEST(test_contacts_are_found)
     assert_int_equal(find(1e4, 10), 0);
 }
 
-/* A side lobe 30 dB under its contact, in its columns, is none; elsewhere it is one. */
+/* An echo 30 dB below a contact is a side lobe in that contact's columns, elsewhere a contact. */
 TEST(test_side_lobes_are_no_contacts)
 {
     fill_with_speckle(6);
@@ -225,7 +224,7 @@ TEST(test_side_lobes_are_no_contacts)
     assert_true(places[1].bright.first_column > 130);
 }
 
-/* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in e-50; nor has the dark. */
+/* Plain speckle, like the dark, has no contacts of 12 dB: a mean of 9 is over 16 once in 1e50. */
 TEST(test_nothing_is_found_in_speckle)
 {
     fill_with_speckle(4);
@@ -234,8 +233,8 @@ TEST(test_nothing_is_found_in_speckle)
     assert_int_equal(find(16.0, 1), 0);
 }
 
-/* A contact with little but black around it, as at the end of a recording, has no seabed that it
- * could be measured against; the others are found all the same. */
+/* A contact with little but black around it, as at the end of a recording, has no seabed to be
+ * measured against. The others are found all the same. */
 TEST(test_contacts_amid_black_are_passed_over)
 {
     fill_with_speckle(8);
@@ -269,7 +268,7 @@ TEST(test_dark_speckle_is_no_shadow)
     contact_image_clear(&image);
 }
 
-/* Images of any size, bright pixels at any place of them, boxes of any size. */
+/* Images and boxes have any size, and bright pixels are at any place. */
 TEST(test_small_images)
 {
     random_state = 5;
@@ -321,9 +320,9 @@ static void take_box(struct contact_image *image, const struct window_box *box)
                box->columns);
 }
 
-/* Of single-look speckle, means of 9 and 21 values are Gamma distributed: their quantiles are 2.064
- * (99.5 %) and 0.527 (0.5 %). A draw knows them to some 0.25 dB, for windows overlap; so many to
- * 0.04 dB. A second contact near by is nobody's seabed, and where there is no part there is no
+/* Means of 9 and 21 values of single-look speckle are Gamma distributed. Their quantiles are 2.064
+ * (99.5 %) and 0.527 (0.5 %). One draw gives them to some 0.25 dB, as windows overlap, and SEEN
+ * draws to 0.04 dB. A second contact nearby does not count as seabed. A missing part gets no
  * answer. */
 TEST(parts_are_seen_by_the_quantiles_of_speckle)
 {

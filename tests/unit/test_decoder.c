@@ -1,5 +1,5 @@
-/* The child process that reads files for a host: what it ends, what it has of the host, and what
- * ends it. That it reads what the host itself would: test_swath_file.c. */
+/* Tests the child process that reads files for a host: what its end affects, what it has of the
+ * host, and what ends it. test_swath_file.c tests that it reads what the host itself would. */
 #include "file_drafts.h"
 
 #include <errno.h>
@@ -13,12 +13,12 @@
 
 #include "api/handles.h"
 
-/* What a context has of it. */
+/* The members of a context that serve the child process. */
 static struct decoder decoder;
 static struct report_host host;
 static struct report report;
 
-/* A host, and the path of a good file of HDF5. */
+/* Makes a host and a good HDF5 file. Returns the file's path. */
 static const char *begin(struct temporary_folder *folder)
 {
     const char *path = temporary_file(folder, "a.h5");
@@ -72,7 +72,7 @@ static sonject_status use_file(const char *path)
     return status;
 }
 
-/* An array of one chunk, or of many: bytes of the first one, and no others. */
+/* Writes an array of one chunk, or of many, of which only the first is stored, in `bytes` bytes. */
 static void write_chunk(const char *path, hid_t type, const hsize_t sides[2],
                         const hsize_t chunk[2], size_t bytes)
 {
@@ -91,7 +91,7 @@ static void write_chunk(const char *path, hid_t type, const hsize_t sides[2],
     assert_true(H5Fclose(file) >= 0);
 }
 
-/* A chunk of 64 MB that is stored unpacked in 100 bytes, behind which HDF5 1.10 reads on. */
+/* HDF5 1.10 reads beyond a chunk of 64 MB that is stored unpacked in 100 bytes. */
 TEST(a_file_that_ends_the_decoder_ends_one_call)
 {
     static const hsize_t sides[2] = {4096, 2048};
@@ -116,7 +116,7 @@ TEST(what_was_open_in_a_dead_decoder_is_refused)
     for (int i = 0; i < 2; i++) {
         assert_int_equal(read_image(files[i]), SONJECT_ERROR_INPUT);
         expect_says("a.h5");
-        assert_int_equal(use_file(path), SONJECT_OK); /* by a new one */
+        assert_int_equal(use_file(path), SONJECT_OK); /* a new child reads */
     }
     for (int i = 0; i < 2; i++)
         swath_file_close(&files[i]);
@@ -144,7 +144,7 @@ TEST(the_child_has_limits_and_nothing_of_the_host)
 {
     char list[64];
     const char *path = begin(*state);
-    const int kept = open("/dev/null", O_RDONLY); /* which programs that are started inherit */
+    const int kept = open("/dev/null", O_RDONLY); /* inherited by programs that are started */
     assert_true(kept >= 0);
     assert_int_equal(use_file(path), SONJECT_OK);
     assert_int_equal(limit_of(RLIMIT_CORE), 0);
@@ -163,7 +163,7 @@ TEST(the_child_ends_with_its_host)
     int ends[2];
     long process = 0;
     const char *path = begin(*state);
-    /* who loses its parent becomes this process's child */
+    /* a process that loses its parent becomes this process's child */
     assert_int_equal(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
     assert_int_equal(pipe(ends), 0);
     fflush(NULL);
@@ -191,7 +191,7 @@ static int stop_now(void *user, double fraction, const char *stage)
     return 1;
 }
 
-/* A child that is stopped answers never; the host asks its caller meanwhile, and ends it. */
+/* A stopped child never answers. The host asks its caller meanwhile, and ends the child. */
 TEST(a_caller_may_end_the_wait_for_the_child)
 {
     struct swath_file *file;
@@ -209,7 +209,7 @@ TEST(a_caller_may_end_the_wait_for_the_child)
     end();
 }
 
-/* Calls with a progress function lend it to those who wait. */
+/* A call lends its progress function to code that waits for the child. */
 TEST(a_run_may_be_ended_while_its_image_is_read)
 {
     static const char text[] =

@@ -1,4 +1,4 @@
-/* Files that appear whole or not at all. */
+/* Tests files that appear whole or not at all. */
 #include "claims.h"
 
 #include <fcntl.h>
@@ -148,8 +148,8 @@ CLEAN(test_publishing)
     EXPECT_OK(&report, file_publish(&report, part, path));
     assert_true(file_exists(path));
     assert_false(file_exists(part));
-    /* a part that is not there, and a name that a folder has: the part goes, the message names the
-     * file */
+    /* a part that is not there, and a name that a folder has: the part is removed, and the message
+     * names the file */
     assert_int_equal(file_publish(&report, part, path), SONJECT_ERROR_STORAGE);
     expect_message(path, "No such file");
     write_bytes(part, "new", 3);
@@ -159,7 +159,7 @@ CLEAN(test_publishing)
     free(part);
 }
 
-/* A part of a process that is no more: a child's. */
+/* Returns the name of a part whose process, a child, has ended. The caller frees it. */
 static char *orphaned_part(const char *path)
 {
     char name[TEMPORARY_CAPACITY + 400] = "";
@@ -204,7 +204,7 @@ static bool holds(const json_t *entry, const char *path, bool hashes_all)
     return is_same;
 }
 
-/* Changes the first byte of a file of so many bytes, at the same time as before where asked. */
+/* Changes the first byte of a file, and keeps the file's time if told to. */
 static void alter(const char *path, bool keeps_time)
 {
     struct stat facts;
@@ -234,7 +234,7 @@ CLEAN(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too)
         assert_int_equal(holds(entry, path, false), is_large);
         assert_false(holds(entry, path, true));
         alter(path, false);
-        assert_true(holds(entry, path, false)); /* as it was, but for the time */
+        assert_true(holds(entry, path, false)); /* same bytes, but another time */
         alter(path, false);
         assert_false(holds(entry, path, false));
         assert_int_equal(truncate(path, sizes[i] - 1), 0);
@@ -281,7 +281,7 @@ CLEAN(test_folders_are_made_with_their_parents)
     expect_message("file/b", "Not a directory");
 }
 
-/* The examples of FIPS 180-4, and lengths about the end of a block, by another program. */
+/* Cases are the examples of FIPS 180-4, and lengths about a block's end, by another program. */
 CLEAN(test_sha256_is_that_of_the_standard)
 {
     static const struct {

@@ -1,12 +1,12 @@
-/* What is left out of image formation: nothing but zeros, and most of those. */
+/* Tests what image formation leaves out: nothing but zeros, and most of the zeros. */
 #include "claims.h"
 #include "form/form.h"
 
 #define BINS     301 /* several whole searches and a rest */
 #define STRIPS   400
-#define LONG_GAP 8 /* empty strips that part two runs */
+#define LONG_GAP 8 /* number of empty strips that part two runs */
 
-/* Every first and last bin of one part, with the other part empty, the same, or one bin. */
+/* Tries first and last bins of one part, with the other part absent, empty, or one bin. */
 TEST(test_bins_of_a_line)
 {
     static float line[BINS], other[BINS];

@@ -1,5 +1,5 @@
-/* Draws moved towards contacts in a world whose laws are known, and a campaign's file with new
- * numbers in their places. */
+/* Tests how draws move towards contacts in a world whose laws are known, and a campaign's file with
+ * new numbers in their places. */
 #include "claims.h"
 
 #include "dataset/fit.h"
@@ -10,14 +10,14 @@
 
 /* ---- A world where contacts show their sizes, some noise, and their levels. */
 
-/* What is drawn: centres, and half widths of uniform distributions about them. */
+/* Distributions that are drawn from: centres, and half widths of uniform ones about them. */
 struct draws_of_world {
     double centre[FITTED_KINDS], half[FITTED_KINDS];
 };
 
 static double noise(uint64_t seed, uint32_t stream, uint64_t index, double deviation)
 {
-    double sum = -6.0; /* of twelve uniform numbers: normal enough */
+    double sum = -6.0; /* the sum of twelve uniform numbers is normal enough */
     for (uint32_t i = 0; i < 12; i++)
         sum += uniform_number(seed, 100 + 12 * stream + i, index);
     return deviation * sum;
@@ -63,7 +63,7 @@ TEST(draws_reach_what_made_the_contacts)
     }
     EXPECT_OK(&folder->report, quantile_goals(&folder->report, real, CONTACTS, goals));
     assert_int_equal(goals[EXTENT_SHADOW_ALONG].levels, 9);
-    assert_int_equal(goals[EXTENT_AXIS_LENGTH].levels, 0); /* nobody shows it */
+    assert_int_equal(goals[EXTENT_AXIS_LENGTH].levels, 0); /* no contact shows it */
     for (uint32_t round = 0; round < ROUNDS; round++) {
         struct draw_move moves[FITTED_KINDS];
         const size_t count = (round + 1) * (size_t)CONTACTS;
@@ -81,9 +81,9 @@ TEST(draws_reach_what_made_the_contacts)
                 made[i].now[k] = draw_moved(&moves[k], made[i].now[k]);
         }
     }
-    /* Means of 400 contacts of such spreads have standard errors of 0.02 (sizes of which headings
-     * show now one, now the other: twice as much), 0.15 dB and 0.05 dB; four of them, and what the
-     * belief in the campaign's own values leaves. */
+    /* Tolerances are four standard errors, and what the belief in the campaign's own values leaves.
+     * Means of 400 contacts of such spreads have standard errors of 0.02 (twice as much for sizes,
+     * as headings show one or another), 0.15 dB and 0.05 dB. */
     static const double tolerances[FITTED_KINDS] = {0.12, 0.12, 0.08, 0.8, 0.5};
     for (size_t k = 0; k < FITTED_KINDS; k++) {
         print_message("%zu: %.3f of %.3f, half %.3f of %.3f\n", k, now.centre[k], hidden.centre[k],
@@ -97,8 +97,7 @@ static const struct draws_of_world world = {{0.0, 0.0, -1.0, 10.0, -15.0},
                                             {0.5, 0.5, 0.5, 5.0, 0.0}};
 static const struct move_prior unmoved = {.contacts = CONTACTS};
 
-/* How far heights are moved where copies of one extent ask for 0.2 more and another one for none.
- */
+/* Returns the move of heights where copies of one extent ask for 0.2 more and another for none. */
 static double move_by_copies(size_t copies)
 {
     static const enum extent alike[] = {EXTENT_SHADOW_HEIGHT, EXTENT_AXIS_LENGTH, EXTENT_AXIS_WIDTH,
@@ -125,8 +124,8 @@ static double move_by_copies(size_t copies)
     return moves[FITTED_HEIGHT].shift;
 }
 
-/* Four witnesses who say the same for the same reason are no four; independent ones would move it
- * four fifths of the way. */
+/* Four copies of an extent are not four extents. Independent ones would move heights four fifths of
+ * the way. */
 TEST(copies_of_an_extent_count_little)
 {
     const double one = move_by_copies(1);
@@ -136,7 +135,7 @@ TEST(copies_of_an_extent_count_little)
     assert_true(four - one < 0.5 * (0.16 - 0.1));
 }
 
-/* Of a round that has been stretched since those of the largest contacts have hardly moved: they
+/* In a round that has been stretched since, the largest contacts alone have hardly moved. They
  * alone are no sample. */
 TEST(rounds_are_compared_whole)
 {
@@ -150,7 +149,7 @@ TEST(rounds_are_compared_whole)
         real[i] = now->shown;
         now->round = 1;
         show(&world, 2, i, old);
-        /* it was drawn half as widely about the upper end */
+        /* the old round was drawn 0.4 times as widely, about the upper end */
         for (size_t k = 0; k < FITTED_KINDS; k++)
             old->drawn[k] = world.centre[k] + world.half[k] +
                             0.4 * (now->drawn[k] - world.centre[k] - world.half[k]);
@@ -167,15 +166,15 @@ TEST(rounds_are_compared_whole)
 
 TEST(a_median_has_the_error_of_statistics)
 {
-    /* of a normal distribution: sqrt(pi / 2) of the mean's */
+    /* normal distribution: sqrt(pi / 2) of the mean's error */
     const double error = quantile_error(0.5, 2.0 * 0.67449 * 3.0, 100.0);
     assert_true(fabs(error - 0.3 * sqrt(PI / 2.0)) < 1e-3);
-    /* and at 5 %: sqrt(0.05 * 0.95) / phi(1.6449) */
+    /* at 5 %: sqrt(0.05 * 0.95) / phi(1.6449) */
     const double tail = 10.0 * quantile_error(0.05, 2.0 * 0.67449, 100.0);
     assert_true(fabs(tail - sqrt(0.0475) / 0.10314) < 0.01);
 }
 
-/* Of ten values drawn between 0 and 1, in as many samples too low as too high. */
+/* A quantile of ten values between 0 and 1 is too low in as many samples as it is too high. */
 TEST(quantiles_of_few_are_in_the_middle)
 {
     enum {
@@ -192,12 +191,12 @@ TEST(quantiles_of_few_are_in_the_middle)
             qsort(values, VALUES, sizeof *values, compare_doubles);
             low += sorted_quantile(values, VALUES, share) < share ? 1.0 / SAMPLES : 0.0;
         }
-        /* four standard errors, and what straight lines between values are off */
+        /* four standard errors, and the error of straight lines between values */
         assert_true(fabs(low - 0.5) < 4.0 * 0.5 / sqrt(SAMPLES) + 0.01);
     }
 }
 
-/* The least and the largest of ten are known but roughly, not infinitely ill. */
+/* The smallest and the largest of ten have large errors, but finite ones. */
 TEST(ends_of_published_quantiles_have_errors)
 {
     for (int end = 0; end <= 1; end++) {

@@ -1,4 +1,4 @@
-/* Materials by name. */
+/* Tests materials by name. */
 #include "claims.h"
 
 #include "scene/params.h"
@@ -8,7 +8,7 @@
 static sonject_material_params take(const char *name)
 {
     sonject_material_params material;
-    memset(&material, 0x55, sizeof material); /* nothing of it must remain */
+    memset(&material, 0x55, sizeof material); /* none of these bytes must remain */
     if (!material_named(name, &material))
         fail_msg("%s is not known", name);
     return material;
@@ -24,7 +24,7 @@ static void expect_same(const sonject_material_params *a, const sonject_material
     assert_true(a->loss == b->loss);
 }
 
-/* As keys that say the same would be taken. */
+/* Expects values to be allowed, as if keys gave them. */
 static void expect_sound(const char *name, const struct section *section,
                          const sonject_material_params *material)
 {
@@ -33,7 +33,7 @@ static void expect_sound(const char *name, const struct section *section,
         const struct field *field = &section->fields[i];
         if (!field_is_sound(field, material, what))
             fail_msg("%s: %s %s", name, field->key, what);
-        if (field->section) /* of the same structure */
+        if (field->section) /* its fields are in the same structure */
             expect_sound(name, field->section, material);
     }
 }
@@ -49,14 +49,14 @@ TEST(test_values_are_allowed)
         relate_energy(&check, "", &material, NAN);
         if (check.status != SONJECT_OK)
             fail_msg("%s: %s", name, report.message);
-        /* of a smooth and a rough part; nothing that the tables do not give */
+        /* materials have a smooth and a rough part, and nothing that the tables do not give */
         assert_true(material.roughness_m > 0.0 && material.lambert > 0.0);
         assert_true(material.lambert_exponent == 1.0);
         assert_true(material.glossy_albedo == 0.0);
     }
 }
 
-/* What tells the materials apart. */
+/* Tests the values in which materials differ. */
 TEST(test_order_of_values)
 {
     const sonject_material_params steel = take("steel");
@@ -83,7 +83,7 @@ TEST(test_order_of_values)
     assert_true(take("fine sand").speed_ratio > 1.0 && take("silt").speed_ratio < 1.0);
 }
 
-/* What its lambert leaves is the surface's cone unless a number is given. */
+/* The sea surface's cone is what its lambert leaves, unless a number is given. */
 TEST(test_the_sea_surfaces_rough_part)
 {
     struct scene scene;

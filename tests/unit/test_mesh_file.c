@@ -1,6 +1,6 @@
-/* Reading meshes: files written here, whole and spoilt on purpose. Every one is read or
- * refused in one line that names it, takes memory in proportion to its size, and leaves nothing
- * behind (run under sanitizers and valgrind). */
+/* Tests the reading of meshes, with files written here, whole and spoilt on purpose. Every file is
+ * read, or refused in one line that names the file. Every file takes memory in proportion to its
+ * size, and leaves nothing behind (run under sanitizers and valgrind). */
 #include "base/byte_order.h"
 #include "claims.h"
 #include "kernel/mesh_samples.h"
@@ -11,7 +11,7 @@
 /* ---- files as bytes in memory ---- */
 
 struct draft {
-    char *bytes; /* a 0 follows that does not count */
+    char *bytes; /* followed by a 0 that does not count */
     size_t count;
 };
 
@@ -140,7 +140,7 @@ static FILE *begin_draft(struct draft *draft)
     return out;
 }
 
-/* The sample in a format; its bytes are for free(). */
+/* Returns the sample in a format. The caller frees the bytes. */
 static struct draft write_format(enum format format, const struct mesh_sample *sample)
 {
     struct draft draft;
@@ -195,7 +195,7 @@ TEST(test_formats)
     sample_clear(&sample);
 }
 
-/* Reads the first bytes of a file, from memory that ends where they do. */
+/* Reads the first bytes of a file, from memory that ends behind them. */
 static sonject_status read_part(enum format format, const char *bytes, size_t count,
                                 struct mesh_soup *soup)
 {
@@ -211,8 +211,8 @@ static sonject_status read_part(enum format format, const char *bytes, size_t co
     return status;
 }
 
-/* Every file that ends too soon is refused, with its name in the message, or (text that loses only
- * its last line) read. */
+/* A file that ends too soon is refused, with its name in the message. Text that loses only its last
+ * line may be read. */
 TEST(test_cut_short)
 {
     struct mesh_sample sample;
@@ -249,12 +249,12 @@ static void expect_refusal(const char *name, const void *bytes, size_t count, co
     assert_null(mesh.vertices);
 }
 
-/* Headers that promise more than the file holds take no memory; a coordinate that is none. */
+/* Headers that promise more than the file holds take no memory. Coordinates must be numbers. */
 TEST(test_wrong_binary_files)
 {
     static const struct {
-        const char *number; /* of triangles */
-        size_t bytes;       /* 0: all */
+        const char *number; /* number of triangles */
+        size_t bytes;       /* bytes of the file; 0: all */
         const char *message;
     } headers[] = {{"\xff\xff\xff\xff", 0, "says 4294967295 triangles, the file holds 12"},
                    {"\x80\x96\x98\0", 0, "cut short"},
@@ -326,7 +326,7 @@ TEST(test_bad_content)
         expect_refusal(cases[i].name, cases[i].text, strlen(cases[i].text), cases[i].message);
     static const char polygon[] = "v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n";
     struct mesh mesh;
-    EXPECT_OK(&report, load("a.obj", polygon, sizeof polygon - 1, &mesh)); /* a fan */
+    EXPECT_OK(&report, load("a.obj", polygon, sizeof polygon - 1, &mesh)); /* a fan of triangles */
     assert_int_equal(mesh.triangle_count, 3);
     assert_int_equal(mesh.topology.open_edges, 5);
     mesh_clear(&mesh);
@@ -364,16 +364,16 @@ TEST(test_units_and_axes)
 
 /* ---- files that somebody spoilt ---- */
 
-/* A triangle takes some 100 bytes while its mesh is made ready, and two bytes of a file can
- * make one ("f 1 2 3 1 2 3 ..."). To this come what is read at once, and the first steps of arrays
- * that grow. */
+/* A triangle takes some 100 bytes while its mesh is made ready, and two bytes of a file can make a
+ * triangle ("f 1 2 3 1 2 3 ..."). More memory goes to what is read at once, and to the first steps
+ * of arrays that grow. */
 #define MEMORY_PER_BYTE 100
 #define MEMORY_AT_ONCE  ((size_t)128 * 1024)
 
 #if defined(COUNTS_MEMORY)
 #include <malloc.h>
 
-static long memory, memory_peak; /* bytes; what others made and this program frees counts, too */
+static long memory, memory_peak; /* bytes; memory of others that this program frees counts, too */
 
 void *__real_malloc(size_t bytes);
 void *__real_calloc(size_t count, size_t bytes);
@@ -421,7 +421,7 @@ static long begin_counting(void)
     return memory;
 }
 
-/* Nothing is left, and it never was more than the file's size allows. */
+/* Expects no memory to be left, and never more to be held than the file's size allows. */
 static void expect_bounded(long before, size_t file_bytes)
 {
     assert_int_equal(memory, before);
@@ -438,7 +438,7 @@ static size_t throw(size_t sides)
     return (size_t)sample_uniform(0.0, (double)sides);
 }
 
-/* A mesh that came through is one that can be traced. */
+/* Expects a mesh that was read to be fit for tracing. */
 static void expect_sound(const struct mesh *mesh)
 {
     const struct mesh_hierarchy *hierarchy = &mesh->hierarchy;
@@ -482,11 +482,11 @@ static sonject_status expect_taken_or_explained(const char *name, const char *by
         assert_int_equal(mesh.triangle_count, 0);
     }
     expect_bounded(before, count);
-    assert_int_equal(unlink(path), 0); /* to write it anew is slower */
+    assert_int_equal(unlink(path), 0); /* overwriting is slower */
     return status;
 }
 
-/* The most triangles that few bytes can make, all alike, in a row or strewn. */
+/* Few bytes make the most triangles, all alike, in a row or strewn. */
 TEST(test_dense_files)
 {
     static const char *const corners[] = {" 1", " 2", " 3", " 4"};
@@ -507,7 +507,7 @@ TEST(test_dense_files)
     }
 }
 
-/* PLY with lists of one byte an entry, and headers that promise what no file holds. */
+/* Tries PLY with lists of one byte an entry, and headers that promise more than a file holds. */
 TEST(test_promises)
 {
     static const char *const counts[] = {

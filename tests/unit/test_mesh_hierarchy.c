@@ -1,5 +1,5 @@
-/* The hierarchy of meshes: every triangle in one slot, boxes that hold what is below them, a
- * bounded depth whatever the mesh, and the same whenever it is built. */
+/* Tests the hierarchy of meshes: every triangle is in one slot, boxes hold all that is below them,
+ * the depth is bounded whatever the mesh, and every build gives the same. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/hierarchy.h"
@@ -20,7 +20,7 @@ static void unite(struct box *box, const struct box *other)
     }
 }
 
-/* Inside with room to spare, as the padding gives it. */
+/* Expects a box inside another, with room to spare by the padding. */
 static void expect_inside(const struct box *inner, const struct box *outer, float padding)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -30,7 +30,7 @@ static void expect_inside(const struct box *inner, const struct box *outer, floa
     }
 }
 
-/* Of a slot of a record with lower_x[]...upper_z[]. */
+/* The box of a slot in a record with lower_x[]...upper_z[]. */
 #define BOX_OF(record, slot)                                                                       \
     (struct box)                                                                                   \
     {                                                                                              \
@@ -44,7 +44,7 @@ struct tree_check {
     const struct mesh_hierarchy *hierarchy;
     const float *vertices;
     const uint32_t *corners;
-    unsigned char *is_seen; /* of each triangle */
+    unsigned char *is_seen; /* flags of all triangles */
     size_t seen, leaves, branches;
     float padding;
 };
@@ -83,7 +83,7 @@ static struct box check_leaf(struct tree_check *check, int number)
     return all;
 }
 
-/* Recursion is bounded by MESH_LEVELS, which is what is tested. */
+/* Checks a branch and all below it. MESH_LEVELS, which is tested, bounds the recursion. */
 static struct box check_branch(struct tree_check *check, int number, unsigned level)
 {
     const struct mesh_branch *branch = &check->hierarchy->branches[number];
@@ -172,7 +172,7 @@ static void check_apart(const char *what, const float *vertices)
     check_hierarchy(what, vertices, corners, MANY, 2.0f);
 }
 
-/* All triangles about one middle: nothing to choose by. */
+/* All triangles have one middle, so that nothing tells them apart. */
 TEST(test_same_middle)
 {
     static float vertices[9 * MANY];
@@ -188,7 +188,7 @@ TEST(test_same_middle)
 }
 
 /* Each triangle is far smaller and nearer to 0 than the one before, so that the best cut always
- * splits off a few: unbounded, that would take as many levels as there are sizes. */
+ * splits off a few. Without a bound this would take as many levels as there are sizes. */
 TEST(test_ever_smaller)
 {
     static float vertices[9 * MANY];

@@ -1,4 +1,4 @@
-/* Whether meshes close, which side is outside, and smooth normals. */
+/* Tests whether meshes close, which side is outside, and smooth normals. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh_arrays.h"
@@ -25,10 +25,10 @@ static void reverse(struct mesh_sample *sample, size_t triangle)
 
 struct expected {
     size_t open, crowded, twisted, turned, pieces, vertices, degenerate;
-    double volume; /* 0: it is not closed */
+    double volume; /* 0: the mesh is open */
 };
 
-/* Coordinates are rounded to 6e-8 of themselves. */
+/* Tolerance of the volume: coordinates are rounded to 6e-8 of themselves. */
 static void expect_topology(const struct mesh_sample *sample, struct expected expected)
 {
     struct mesh mesh = prepare(sample);
@@ -57,13 +57,13 @@ TEST(test_orientation)
     expect_topology(&sample,
                     (struct expected){.turned = 12, .pieces = 1, .vertices = 8, .volume = 1.44});
     for (size_t i = 0; i < 12; i += 5)
-        reverse(&sample, i); /* and three of them not */
+        reverse(&sample, i); /* three of them outwards again */
     expect_topology(&sample,
                     (struct expected){.turned = 9, .pieces = 1, .vertices = 8, .volume = 1.44});
     sample_clear(&sample);
 }
 
-/* The box with corners of its own for each triangle, moved by up to so far. */
+/* Makes the box with separate corners for each triangle, moved by up to off_m/2 along each axis. */
 static struct mesh prepare_loose_box(double off_m, bool is_reversed)
 {
     struct mesh_sample box;
@@ -82,8 +82,8 @@ static struct mesh prepare_loose_box(double off_m, bool is_reversed)
     return prepare(&loose);
 }
 
-/* A millionth of the box's diagonal is 2.4 um; the farthest corners of a seam are sqrt(3)/2 apart.
- */
+/* Seams may be 2.4 um, a millionth of the box's diagonal. A seam's farthest corners are sqrt(3)/2
+ * of off_m apart. */
 TEST(narrow_seams_close_in_any_order_and_thin_walls_stay)
 {
     for (int is_reversed = 0; is_reversed < 2; is_reversed++) {
@@ -96,7 +96,7 @@ TEST(narrow_seams_close_in_any_order_and_thin_walls_stay)
         assert_false(mesh.topology.is_closed);
         mesh_clear(&mesh);
     }
-    /* two sides of a closed mesh that are closer than a seam's may be */
+    /* two sides of a closed mesh that are closer than the sides of a seam may be */
     struct mesh_sample sample;
     sample_box(&sample);
     for (size_t i = 0; i < 8; i++)
@@ -141,12 +141,12 @@ TEST(test_open)
     expect_topology(&sample, (struct expected){.open = 3, .pieces = 1, .vertices = 8});
     assert_non_null(strstr(report.message, "box.stl: the mesh does not enclose a volume: 3 edges"));
     for (size_t i = 0; i < 11; i += 5)
-        reverse(&sample, i); /* the fewer */
+        reverse(&sample, i); /* the smaller part */
     expect_topology(&sample, (struct expected){.open = 3, .turned = 3, .pieces = 1, .vertices = 8});
     sample_clear(&sample);
 }
 
-/* A fin on an edge of the box: three triangles there. */
+/* A fin on an edge of the box, which then has three triangles. */
 TEST(test_crowded)
 {
     struct mesh_sample sample;
@@ -195,8 +195,8 @@ TEST(test_twisted)
             .open = 2 * STEPS, .twisted = 1, .turned = STEPS, .pieces = 1, .vertices = 2 * STEPS});
 }
 
-/* Triangles with two equal corners go, and take no closedness with them; one whose corners lie on a
- * line stays, for its neighbours' sake. */
+/* Triangles with two equal corners are removed, and the mesh stays closed. A triangle whose corners
+ * lie on a line stays, for its neighbours' sake. */
 TEST(test_degenerate)
 {
     struct mesh_sample sample;
@@ -204,10 +204,10 @@ TEST(test_degenerate)
     uint32_t corners[48];
     sample_box(&sample);
     memcpy(positions, sample.positions, 24 * sizeof *positions);
-    memcpy(&positions[24], sample.positions, 3 * sizeof *positions); /* vertex 8 is 0 again */
-    for (size_t axis = 0; axis < 3; axis++)                          /* 9: on the edge of 0 and 3 */
+    memcpy(&positions[24], sample.positions, 3 * sizeof *positions); /* vertex 8 equals vertex 0 */
+    for (size_t axis = 0; axis < 3; axis++) /* vertex 9: on the edge of 0 and 3 */
         positions[27 + axis] = 0.5 * (sample.positions[axis] + sample.positions[9 + axis]);
-    positions[30] = positions[31] = positions[32] = 1e5; /* 10: unused, and counts for nothing */
+    positions[30] = positions[31] = positions[32] = 1e5; /* vertex 10: unused */
     memcpy(corners, sample.corners, 36 * sizeof *corners);
     /* the diagonal 0-3 of face 0 2 3 1 is cut at 9 on one side only, with a sliver to fill */
     const uint32_t more[12] = {0, 2, 9, 9, 2, 3, 0, 9, 3, 0, 8, 5};
@@ -223,7 +223,7 @@ TEST(test_degenerate)
     sample_clear(&sample);
 }
 
-/* One vertex of 200,000 triangles: no work grows with the square of that. */
+/* Two vertices have 100,000 triangles each. No work grows with the square of this number. */
 TEST(test_crowded_vertex)
 {
     enum {
@@ -254,8 +254,8 @@ TEST(test_crowded_vertex)
     sample_clear(&cone);
 }
 
-/* On a sphere normals point away from the middle; on a box of 90 degrees they are the facets' below
- * that angle, and mixed above it. */
+/* A sphere's normals point away from its middle. A box's normals, 90 degrees apart, are the facets'
+ * if the smooth angle is smaller, and mixed if it is larger. */
 TEST(test_normals)
 {
     struct mesh_sample sample;

@@ -1,18 +1,18 @@
-/* Regions of multi-bounce echoes: every echo is in one of them, and little else is. */
+/* Tests regions of multi-bounce echoes: every echo is in one region, and little else is. */
 #include "claims.h"
 #include "trace/multibounce.h"
 
 #define STRIPS 9000
 #define BINS   30000
 #define PLACES 5
-#define ABOUT  4000 /* echoes about places */
-#define COLUMN 30   /* echoes one under the other, 16 strips apart */
+#define ABOUT  4000 /* number of echoes about places */
+#define COLUMN 30   /* number of echoes in a column, 16 strips apart */
 #define ECHOES (ABOUT + COLUMN + 2)
 
 static struct report report;
 
-/* Echoes about a few places, and some far from all; and a column, on both sides of whose foot two
- * others lie that are joined: their region must join the column's, too. */
+/* Returns an echo: about a few places, far from all, or in a column. Two others, on both sides of
+ * the column's foot, are joined, and their region must join the column's, too. */
 static struct multibounce_echo_record echo_of(uint32_t number)
 {
     static const int32_t places[PLACES][2] = {
@@ -20,7 +20,7 @@ static struct multibounce_echo_record echo_of(uint32_t number)
     const uint32_t random = (number + 1) * 2654435761u;
     const int32_t *place = places[number % PLACES];
     struct multibounce_echo_record echo = {
-        .strip = place[0] + (int32_t)(random >> 24), /* to 255 beyond */
+        .strip = place[0] + (int32_t)(random >> 24), /* up to 255 beyond */
         .bin = place[1] + (int32_t)(random >> 8 & 0xff),
         .real_part = 1.0f,
         .imaginary_part = -2.0f,
@@ -35,8 +35,8 @@ static struct multibounce_echo_record echo_of(uint32_t number)
     return echo;
 }
 
-/* Two pairs of sources, whose grids do not begin in the same bin. The second alone has the column.
- */
+/* Lays echoes of two pairs of sources, whose grids begin in different bins. Only the second has the
+ * column. */
 static void lay_echoes(struct multibounce *multibounce)
 {
     memset(multibounce, 0, sizeof *multibounce);
@@ -50,7 +50,7 @@ static void lay_echoes(struct multibounce *multibounce)
         multibounce->sums[k].amplitude_of_quantum = 0.5;
         for (uint32_t i = 0; i < (k == 0 ? ABOUT : ECHOES); i++) {
             struct multibounce_echo_record echo = echo_of(i);
-            echo.bin += 50 * k; /* those of the device count from the grid's first */
+            echo.bin += 50 * k; /* the device's bins count from the grid's first */
             assert_true(multibounce_sums_add(&multibounce->sums[k], &echo, 1));
         }
     }
@@ -93,7 +93,7 @@ TEST(test_regions_hold_all_echoes_once)
     multibounce_end(&multibounce);
 }
 
-/* However few strips are read at a time. */
+/* Regions are read whole, however few strips are read at a time. */
 TEST(test_regions_are_read_whole)
 {
     struct multibounce multibounce;

@@ -1,4 +1,4 @@
-/* Launches on the device native: each work-item runs once, whoever else launches. */
+/* Tests launches on the native device: each work-item runs once, whoever else launches. */
 #include "claims.h"
 
 #include <fenv.h>
@@ -15,9 +15,9 @@
 #define LAUNCHES 50
 #define ITEMS    1200
 #define FORKS    60
-#define SECONDS  60 /* after which a child that waits for ever is ended */
+#define SECONDS  60 /* s, after which a child that hangs is ended */
 
-/* Counts its work-items in a buffer, and those at another rounding than the default. */
+/* Counts each work-item in a buffer, and calls at another rounding than the default. */
 static void count(const struct kernel_argument *arguments, const size_t *global, size_t first,
                   size_t end)
 {
@@ -25,14 +25,14 @@ static void count(const struct kernel_argument *arguments, const size_t *global,
     int *rounded = *(int *const *)arguments[1].value;
     static const struct timespec moment = {0, 20000};
     (void)global;
-    nanosleep(&moment, NULL); /* so that who does not wait for a thread is seen to go on without */
+    nanosleep(&moment, NULL); /* shows a launch that does not wait for its threads */
     for (size_t i = first; i < end; i++)
         counts[i]++;
     if (fegetround() != FE_TONEAREST)
         __atomic_add_fetch(rounded, 1, __ATOMIC_RELAXED);
 }
 
-/* A host's threads: as many as are asked for, those that it has time for, or none. */
+/* A host's threads: as many as asked for, as many as the host has time for, or none. */
 struct task_host {
     uint32_t threads_max;
     uint32_t asked, started; /* atomic */
@@ -64,8 +64,8 @@ static void run_tasks(void *user, uint32_t wanted, sonject_task_function run, vo
     host->started += started;
 }
 
-/* Opens, launches and closes; whether all was as it should be. by: a host's threads; NULL: the
- * library's. */
+/* Opens, launches and closes. Returns whether all was as it should be. by: a host's threads; NULL:
+ * the library's. */
 static bool launch_by(struct task_host *by, uint32_t most, size_t items)
 {
     static const size_t rest[2] = {3, 2};
@@ -103,7 +103,7 @@ TEST(test_a_hosts_threads_run_each_work_item_once)
         by.asked = 0;
         assert_true(launch_by(&by, 1, 40));
         assert_int_equal(by.asked, 0);
-        assert_true(launch_by(&by, 60, 1)); /* which is 6 with its other sides */
+        assert_true(launch_by(&by, 60, 1)); /* 6 work-items with the other sides */
         assert_int_equal(by.asked, 6);
     }
 }
@@ -128,8 +128,8 @@ TEST(test_each_work_item_runs_once_beside_other_hosts)
         assert_true(are_right[i]);
 }
 
-#ifndef IS_SANITIZED /* whose own locks do not survive such a fork */
-/* Two work-items that wait for each other, and so for a second thread. */
+#ifndef IS_SANITIZED /* sanitizers' own locks do not survive the fork */
+/* Lets two work-items wait for each other, and so for a second thread. */
 static void meet(const struct kernel_argument *arguments, const size_t *global, size_t first,
                  size_t end)
 {
@@ -140,7 +140,7 @@ static void meet(const struct kernel_argument *arguments, const size_t *global, 
         sched_yield();
 }
 
-/* Forked while other threads launch. */
+/* Children are forked while other threads launch. */
 TEST(test_children_have_threads_of_their_own)
 {
     pthread_t threads[HOSTS];

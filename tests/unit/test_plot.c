@@ -1,5 +1,5 @@
-/* Pictures: size, grey levels, colours, ticks and text. The drawn panels are where they are told to
- * be, within their frames, so that margins may change. */
+/* Tests pictures: size, grey levels, colours, ticks and text. Panels are looked for at the places
+ * that the plot reports, within their frames, so that margins may change. */
 #include "claims.h"
 #include "image/canvas.h"
 #include "image/plot.h"
@@ -9,7 +9,7 @@
 struct picture {
     uint8_t *rgb;
     uint32_t height, width;
-    uint32_t x, y; /* of the first panel's first pixel */
+    uint32_t x, y; /* place of the first panel's first pixel */
     uint32_t panel_height, panel_width;
 };
 
@@ -83,7 +83,7 @@ static void fill(size_t count, float value)
         amplitude[i] = value;
 }
 
-/* 20 dB apart on a scale of 40 dB: half of the greys. Row 0 at the top, column 0 at the left. */
+/* 20 dB on a scale of 40 dB are half of the greys. Row 0 is at the top, column 0 at the left. */
 TEST(test_grey_levels)
 {
     const struct plot_frame frame = frame_of(40, 50);
@@ -105,8 +105,8 @@ TEST(test_grey_levels)
     expect_grey(783, 639, 191);
 }
 
-/* -40...0 dB in equal steps: of a thousand pixels the 30th darkest and the 2nd brightest bound the
- * scale, each to the 0.01 dB of the count and the 0.04 dB between pixels. */
+/* Levels rise from -40 to 0 dB in equal steps. Of a thousand pixels the 30th darkest and the 2nd
+ * brightest bound the scale, each to the 0.01 dB of the count and the 0.04 dB between pixels. */
 TEST(test_scale_from_percentiles)
 {
     struct plot_frame frame = frame_of(100, 100);
@@ -132,7 +132,7 @@ TEST(test_large_images_average_energy)
     fill((size_t)3200 * 3202, 1.0f);
     for (size_t i = 0; i < (size_t)3200 * 3202; i += 2)
         amplitude[i] = 0.0f;
-    amplitude[4] = amplitude[5] = NAN; /* they count for nothing: the cell's mean is the same */
+    amplitude[4] = amplitude[5] = NAN; /* NAN counts for nothing: the cell's mean is the same */
     draw_one(&frame);
     assert_int_equal(picture.panel_height, 800);
     assert_int_equal(picture.panel_width, 801); /* the last column of cells holds two pixels */
@@ -165,7 +165,7 @@ TEST(test_difference_colours)
 }
 
 /* Every panel that is drawn has the first one's size, and a picture has no more panels than asked
- * for. Along the upper edge: a frame for each panel, then one for each colour bar. */
+ * for. The upper edge has a frame for each panel, then one for each colour bar. */
 TEST(test_panels_side_by_side)
 {
     const struct plot_frame frame = frame_of(400, 480);
@@ -271,14 +271,14 @@ TEST(test_nothing_to_draw)
     expect_no_picture(&frame);
 }
 
-/* Distances on both axes are in proportion, as far as panels stay legible; no level is black or
- * white, and of one level alone the middle of the scale. */
+/* Distances on both axes are in proportion as far as panels stay legible. Pixels without a level
+ * are black or white. A single level is in the middle of the scale. */
 TEST(test_shapes_and_pixels_without_levels)
 {
     static const struct {
         uint64_t rows, columns;
         double row_spacing_m;
-        uint32_t height, width; /* of the panel; 0: any */
+        uint32_t height, width; /* size of the panel; 0: any */
     } cases[] = {{1, 1, 0.025, 0, 0},       {1, 2, 0.025, 0, 0},     {1, 10000, 0.025, 0, 0},
                  {10000, 1, 0.025, 0, 0},   {3, 30000, 0.025, 0, 0}, {1201, 799, 0.025, 0, 0},
                  {100, 400, 0.1, 800, 800}, {801, 1, 0.025, 0, 0}};
@@ -337,7 +337,7 @@ static struct canvas blank_canvas(uint32_t height, uint32_t width)
     return canvas;
 }
 
-/* Every printable character is drawn, differs from the others, keeps to its box, and turned text is
+/* Every printable character is drawn, differs from the others, and keeps to its box. Turned text is
  * the same text turned. */
 TEST(test_font)
 {
@@ -388,8 +388,8 @@ TEST(test_text_is_cut_off)
     free(canvas.rgb);
 }
 
-/* Pixels that are four times as high as wide, or the reverse: to scale, none enlarged but the
- * longer sides; a side is at least a fifth of the other. */
+/* Pixels that are four times as high as wide, or the reverse, are drawn to scale. Only their longer
+ * sides are enlarged. A picture's side is at least a fifth of the other side. */
 TEST(test_small_images_are_to_scale)
 {
     static const struct {

@@ -1,4 +1,4 @@
-/* Tables of sound speeds: every way to write them, and files that are none. */
+/* Tests tables of sound speeds: every way to write them, and files that are not tables. */
 #include "claims.h"
 #include "clean_folder.h"
 #include "schema/tables.h"
@@ -11,7 +11,7 @@ static sonject_status read_bytes(const void *bytes, size_t count, struct profile
     return profile_table_read(&report, path, NULL, table);
 }
 
-/* The samples of all good tables here: 12 m and 1490.5 m/s, then 15.5 m and 1.5e3 m/s. */
+/* Expects the samples of all good tables: 12 m and 1490.5 m/s, then 15.5 m and 1.5e3 m/s. */
 static void expect_taken(const char *text, bool is_depth)
 {
     struct profile_table table;
@@ -70,7 +70,7 @@ CLEAN(test_heights_rise_however_the_table_runs)
     }
 }
 
-/* message: behind the file's name. */
+/* Expects a refusal. message: the text behind the file's name. */
 static void expect_refused(const void *bytes, size_t count, const char *message)
 {
     struct profile_table table;
@@ -180,16 +180,16 @@ CLEAN(test_files_that_cannot_be_read)
     assert_null(table.positions_m);
 }
 
-/* ---- What becomes of good ones. */
+/* ---- Layers of good tables. */
 
-#define STEP (1.0 / 20000.0) /* of the sound speed between layers, at most */
+#define STEP (1.0 / 20000.0) /* largest relative step of the sound speed between layers */
 
 struct profile {
     double heights[5], speeds[5];
     size_t count;
 };
 
-/* The sound speed that the samples mean. */
+/* Returns the sound speed at a height, by straight lines between samples. */
 static double speed_at(const struct profile *profile, double height)
 {
     size_t i = 0;
@@ -204,8 +204,8 @@ static double speed_at(const struct profile *profile, double height)
     return (1.0 - share) * profile->speeds[i] + share * profile->speeds[i + 1];
 }
 
-/* Layers of the straight pieces that lie over the seabed: as few as the step allows, and one where
- * it is constant, which the next one joins if it has the same speed. */
+/* Expects layers of the straight pieces over the seabed: as few as the step allows, and one for a
+ * constant speed. The next layer joins it if its speed is the same. */
 static void expect_layers(const struct profile *profile, size_t expected)
 {
     struct water_layer *layers;
@@ -235,9 +235,9 @@ TEST(test_profiles_become_thin_layers)
 {
     /* 1490 to 1520 m/s: 30 / (1490 / 20000) = 402.7 layers, and one below and above */
     const struct profile thermocline = {{0, 12, 16, 25}, {1490, 1490, 1520, 1520}, 4};
-    const struct profile falling = {{3, 20}, {1500.0, 1499.0}, 2};          /* 13.3, and two */
-    const struct profile buried = {{-4, 4, 6}, {1500, 1504, 1504}, 3};      /* 1502...1504: 26.6 */
-    const struct profile below = {{-9, -5, 10}, {1400, 1500, 1501}, 3};     /* 2/3 m/s: 8.9 */
+    const struct profile falling = {{3, 20}, {1500.0, 1499.0}, 2};      /* 13.3 layers, and two */
+    const struct profile buried = {{-4, 4, 6}, {1500, 1504, 1504}, 3};  /* 1502...1504: 26.6 */
+    const struct profile below = {{-9, -5, 10}, {1400, 1500, 1501}, 3}; /* 2/3 m/s: 8.9 */
     const struct profile little = {{1, 2, 3}, {1500, 1500.06, 1500.01}, 3}; /* less than a step */
     const struct profile constant = {{1, 2, 3}, {1480, 1480, 1480}, 3};
     const struct profile corner = {{0, 10, 20}, {1500, 1503.1, 1499}, 3}; /* 41.3 and 54.7 */
@@ -250,7 +250,7 @@ TEST(test_profiles_become_thin_layers)
     expect_layers(&corner, 98);
 }
 
-/* Samples as close as heights may be, as far up as they may be, and the steepest that fits. */
+/* Samples are as close and as far up as heights may be, and as steep as fits. */
 TEST(test_steep_profiles_keep_rising)
 {
     const double heights[] = {999999.0, 999999.0000011}, speeds[] = {1400.0, 1660.0};

@@ -1,4 +1,4 @@
-/* Sizes of rasters and regions; transfer functions, from stored numbers to amplitudes and back. */
+/* Tests sizes of rasters and regions, and the transfer of stored numbers to amplitudes and back. */
 #include "claims.h"
 
 #include <float.h>
@@ -11,13 +11,13 @@ static sonject_transfer_params make(sonject_transfer kind, double parameter, dou
     return transfer;
 }
 
-/* The largest number that the type stores. */
+/* Returns the largest number that the type stores. */
 static size_t last_of(enum pixel_type type)
 {
     return type == PIXEL_UINT8 ? 255 : 65535;
 }
 
-/* All values of the type there and back; in one call, which goes by a table, and value by value. */
+/* Takes all values of the type there and back, in one call, which uses a table, or one by one. */
 static void expect_round_trip(const sonject_transfer_params *transfer, enum pixel_type type,
                               bool is_one_call)
 {
@@ -136,7 +136,7 @@ TEST(test_full_scale_is_counted)
     assert_int_equal(clipped, 13);
 }
 
-/* Twelve bits in sixteen. */
+/* The recorder stores twelve bits in sixteen. */
 TEST(test_the_recorders_full_scale)
 {
     sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);

@@ -1,5 +1,5 @@
-/* TIFF, PNG and JPEG: what is written comes back, and a copy differs from its source in the patch
- * alone. */
+/* Tests TIFF, PNG and JPEG: pixels come back as written, and a copy differs from its source in the
+ * patch alone. */
 #include "image_drafts.h"
 
 #include <errno.h>
@@ -15,15 +15,15 @@ struct format {
     const struct raster_layout *layout;
 };
 
-/* The last one loses something. */
+/* Formats with the layouts to write. The last one is lossy. */
 static const struct format formats[] = {
     {"a.tif", &grey8}, {"b.tiff", &grey16}, {"c.TIF", &real32}, {"d.tif", &complex32},
     {"e.png", &grey8}, {"f.PNG", &grey16},  {"g.jpg", &grey8}};
 #define LOSSLESS (COUNT(formats) - 1)
 
-/* Whole, placed among zeros, and again a second later, when a file that holds the time of its
- * making would differ. Decoders run forwards; asking for earlier rows, or the same ones again, must
- * not confuse them. */
+/* Files are written whole, placed among zeros, and again a second later, when a file that holds the
+ * time of its making would differ. Decoders run forwards: a request for earlier rows, or the same
+ * rows again, must not confuse them. */
 CLEAN(what_is_written_comes_back)
 {
     static const struct region regions[] = {{30, 5, 10, 20}, {2, 7, 20, 3}, {2, 7, 20, 3},
@@ -101,7 +101,7 @@ static void expect_attribute(const char *path, const char *name, size_t capacity
     swath_file_close(&file);
 }
 
-/* Neither the coding of a JPEG nor a PNG's chunks are kept, but pixels and attributes are. */
+/* Copies keep pixels and attributes, but neither a JPEG's coding nor a PNG's chunks. */
 CLEAN(attributes_stay_in_copies_of_png_and_jpeg_which_are_png)
 {
     static const struct format sources[] = {
@@ -172,7 +172,7 @@ static void say_in_png(const char *path, const uint64_t sides[2], unsigned bits,
     write_bytes(path, png, count);
 }
 
-/* A library that takes rows until one fails once; and a source that may fail. */
+/* A library that takes rows and may fail at one, and a source of rows that may fail. */
 struct hand {
     uint64_t taken, fails_at;
     bool has_rows;
@@ -247,7 +247,7 @@ CLEAN(the_quality_of_a_jpeg_is_that_it_was_written_with)
     size_t table = 0;
     while (memcmp(bytes + table, "\xFF\xDB", 2) != 0)
         table++;
-    for (size_t i = 0; i < 64; i++) /* behind its mark, length and number */
+    for (size_t i = 0; i < 64; i++) /* behind the table's mark, length and number */
         bytes[table + 5 + i] = i % 2 ? 1 : 120;
     write_bytes(path, bytes, count);
     assert_int_equal(jpeg_quality(path), JPEG_QUALITY_UNTOLD);
@@ -271,7 +271,7 @@ CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused)
     const char *path = file_in("a.jpg");
     EXPECT_OK(&report, write_image(path, &grey8, make_image(&grey8)));
     unsigned char *bytes = load(path, &count);
-    memcpy(bytes + count / 2, "\xFF\xD9", 2); /* its end: libjpeg fills with grey and only warns */
+    memcpy(bytes + count / 2, "\xFF\xD9", 2); /* an end: libjpeg fills with grey and only warns */
     write_bytes(path, bytes, count);
     expect_no_open(path, "cut short or damaged");
 }
@@ -305,11 +305,11 @@ CLEAN(absurd_sides_are_refused)
     }
 }
 
-/* What a damaged file may lead to. */
+/* Trials of damaged files, and what came of them. */
 struct damage {
     const char *source, *copy;
     const unsigned char *patch;
-    size_t taken, refused, refused_at_once; /* files; the last: when they were opened */
+    size_t taken, refused, refused_at_once; /* numbers of files; the last: refused when opened */
 };
 
 static void try_damaged(struct damage *damage, const unsigned char *bytes, size_t count)
@@ -338,7 +338,7 @@ static void try_damaged(struct damage *damage, const unsigned char *bytes, size_
         damage->refused++;
 }
 
-/* Every length near the beginning and the end, some between. Returns how many. */
+/* Tries every length near the beginning and the end, and some between. Returns their number. */
 static size_t cut_short(struct damage *damage, const unsigned char *bytes, size_t count)
 {
     size_t tried = 0;
@@ -349,7 +349,7 @@ static size_t cut_short(struct damage *damage, const unsigned char *bytes, size_
     return tried;
 }
 
-/* Three bytes at a time, half of them among the first and last ones, where directories are. */
+/* Changes three bytes at a time, half of them near both ends, where directories are. */
 static void change_bytes(struct damage *damage, const unsigned char *bytes, size_t count,
                          size_t tries)
 {
@@ -415,7 +415,7 @@ CLEAN(files_that_are_cut_short_or_damaged_do_no_harm)
         const char *words = (const char *)load(output, &said);
         if (said > 0)
             fail_msg("something was printed: %s", words);
-        /* all but a PNG's mark of its end, which holds no pixels */
+        /* a PNG's end mark, which holds no pixels, may be missing */
         const size_t harmless = strcmp(names[i], "a.png") == 0 ? 12 : 0;
         if (cut.refused != lengths - harmless || cut.refused_at_once != cut.refused ||
             cut.taken != harmless || changed.taken + changed.refused != tries)

@@ -1,5 +1,5 @@
-/* Measured responses and motion from callers and files: what is taken, and what is refused in one
- * line. */
+/* Tests measured responses and motion from callers and files: what is taken, and what is refused in
+ * one line. */
 #include "claims.h"
 
 #include "scene_folder.h"
@@ -89,7 +89,7 @@ TEST(test_interpolation)
     struct response_table table;
     memset(&table, 0, sizeof table);
     for (int i = 0; i < 9; i++) {
-        x[i] = 0.3 * (i - 4) + 0.02 * (i - 4) * (i - 4) - 0.1; /* uneven */
+        x[i] = 0.3 * (i - 4) + 0.02 * (i - 4) * (i - 4) - 0.1; /* uneven steps */
         real_part[i] = 2.0 - x[i] * x[i];
         imaginary_part[i] = 0.0;
     }
@@ -106,7 +106,7 @@ TEST(test_interpolation)
         assert_true(fabs(value.imaginary_part) < 1e-15);
         energy += pow((2.0 - at * at) / peak, 2.0) * (x[7] - x[1]) / 1000.0;
     }
-    /* midpoints of 1000 steps */
+    /* tolerance: midpoints of 1000 steps */
     assert_true(fabs(response_table_energy(&table, x[1], x[7]) / energy - 1.0) < 1e-5);
     assert_true(response_table_at(&table, x[0] - 0.01).real_part == 0.0);
     assert_true(response_table_at(&table, x[8] + 0.01).real_part == 0.0);

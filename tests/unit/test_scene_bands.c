@@ -1,4 +1,4 @@
-/* Bands: several sonars in one scene file. */
+/* Tests bands: several sonars in one scene file. */
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -93,7 +93,7 @@ TEST(test_what_is_wrong_is_told)
          "changes"},
         {BASE "bands: {low: {bands: {}}}\nband: low\n",
          ":4:22: bands.low.bands: cannot be a band's own; remove it"},
-        /* the place is where it was written */
+        /* the message tells the place where the band was written */
         {BASE "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
          ":5:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz"},
     };

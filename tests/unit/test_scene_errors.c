@@ -1,11 +1,11 @@
-/* Scene files that are wrong: each message tells the place, the key, what is wrong, what to do. */
+/* Tests wrong scene files. Each message tells the place, the key, the mistake, and what to do. */
 #include "claims.h"
 #include "scene_folder.h"
 
 #define SONAR_WITH(keys) "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, " keys "}\n"
 #define OBJECT           BASE "objects:\n  - shape: "
 
-#define MATERIAL OBJECT "sphere\n    diameter: 1\n    material: " /* its value on line 7 */
+#define MATERIAL OBJECT "sphere\n    diameter: 1\n    material: " /* the value is on line 7 */
 #define KNOWN_MATERIALS                                                                            \
     "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
 
@@ -305,7 +305,7 @@ TEST(test_overrides_that_are_wrong)
 {
     static const struct {
         const char *override;
-        const char *message; /* all of it */
+        const char *message; /* the whole message */
     } wrong[] = {
         {"sonar.altitude", "--set sonar.altitude: has no '='; write key.path=value"},
         {"sonar.altitude=", "--set sonar.altitude: has no value; write key.path=value"},

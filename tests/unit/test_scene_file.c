@@ -1,4 +1,4 @@
-/* Scene files that are good: every key, every way to write it, overrides. */
+/* Tests scene files that are good: every key, every way to write it, overrides. */
 #include "claims.h"
 #include "scene_keys.h"
 
@@ -33,14 +33,14 @@ static void expect_case(const struct key_case *key)
     expect_arrived(key, structure_of(&folder->scene, key));
 }
 
-/* A value that the key's place holds anyway would show nothing. */
+/* Expects a key's value not to be the default, which would show nothing. */
 static void expect_not_the_default(const struct key_case *key)
 {
     const char *name = strrchr(key->path, '.');
     if (key->type == TYPE_NOTHING || key->type == TYPE_TEXT || key->type == TYPE_PATH)
         return;
     if (name && (strcmp(name, ".position") == 0 || strcmp(name, ".level") == 0))
-        return; /* the only word for it is the default; its keys have cases of their own */
+        return; /* the key's only word is the default; its keys have cases of their own */
     if (read_case(key, NULL) != SONJECT_OK)
         return; /* the section cannot do without the key */
     const void *structure = structure_of(&folder->scene, key);
@@ -56,7 +56,7 @@ TEST(test_every_key_arrives)
     }
 }
 
-/* So that a key cannot be added to the tables without a case above. */
+/* No key can be added to the tables without a case. */
 TEST(test_every_key_has_a_case)
 {
     json_t *keys = list_keys();
@@ -108,7 +108,7 @@ TEST(test_words_and_forms)
     assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_METRES);
 }
 
-/* A name fills in all of a material; keys beside it change it; a seabed keeps its backscatter. */
+/* A name fills in a material, keys beside the name change it, a seabed keeps its backscatter. */
 TEST(test_named_materials)
 {
     const char *overrides[] = {"objects[0].material={name: concrete, roughness: 7 mm}",
@@ -178,7 +178,7 @@ TEST(test_overrides_change_and_add)
     assert_int_equal(folder->scene.object_count, 2);
     assert_true(folder->scene.objects[0].heading_rad == 30.0 / 180.0 * PI);
     assert_true(folder->scene.objects[1].width_m == 2.0);
-    assert_true(folder->scene.objects[1].diameter_m == 0.0); /* a plane has none, not the default */
+    assert_true(folder->scene.objects[1].diameter_m == 0.0); /* none, not the default */
     assert_true(folder->scene.sonar.altitude_m == 12.0);
     assert_int_equal(folder->scene.injection.seed, 77);
     assert_int_equal(read_scene(&none, 1), SONJECT_OK);

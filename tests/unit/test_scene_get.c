@@ -1,4 +1,4 @@
-/* What a scene says, read back key by key. */
+/* Tests a scene's values, read back key by key. */
 #include <sonject/sonject.h>
 
 #include <stdio.h>
@@ -108,7 +108,7 @@ TEST(keys_that_are_none_are_refused)
     sonject_scene_release(&scene);
 }
 
-/* In every call that makes something: nothing of a call before is left. */
+/* After any failed call that makes something, nothing of an earlier call is left. */
 TEST(failed_calls_set_what_they_make_to_null_and_tell_why)
 {
     const sonject_scene_read_params reading = {.struct_size = sizeof reading, .text = HEAD};
@@ -132,7 +132,7 @@ TEST(failed_calls_set_what_they_make_to_null_and_tell_why)
     assert_string_equal(sonject_context_message(context), "path, without a text, must not be NULL");
 }
 
-/* Names of the text are meant from its folder, names that are set from the working folder. */
+/* Names in the text count from the text's folder, names that are set from the working folder. */
 TEST(names_of_files_are_absolute)
 {
     char folder[1024], expected[1100];

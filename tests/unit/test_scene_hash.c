@@ -1,4 +1,4 @@
-/* What counts as the same inputs of a run. */
+/* Tests what counts as the same inputs of a run. */
 #include "claims.h"
 #include "inject/scene_hash.h"
 #include "scene_keys.h"
@@ -9,30 +9,30 @@ static void hash_of(const struct scene *scene, const char *identity, char text[H
     assert_int_equal(scene_hash(&report, scene, identity, text), SONJECT_OK);
 }
 
-/* Keys that no image depends on, whose case has the value that is there without them, or that say
- * what another key can say. */
+/* True for keys that no image depends on, whose case has the value that is there without them, or
+ * that say what another key can say. */
 static bool is_without_effect(const char *path)
 {
     static const char *const others[] = {
         "sonject",
-        "band", /* what it chooses does */
+        "band", /* the keys that the band gives count */
         "bands",
         "input.path",        /* the swath's identity tells files apart */
-        "input.calibration", /* the keys that it tells count */
+        "input.calibration", /* the keys that the calibration gives count */
         "seabed.relief[].mound.position",
         "objects[].level",
         "objects[].position",
-        "objects[].user.file", /* its text counts as code does */
-        "objects[].mesh.file", /* as mesh does */
+        "objects[].user.file", /* the file's text counts, as code does */
+        "objects[].mesh.file", /* counts as mesh does */
         "objects[].mesh.open",
     };
     for (size_t i = 0; i < COUNT(others); i++)
         if (strcmp(path, others[i]) == 0)
             return true;
-    return strncmp(path, "elements.", 9) == 0; /* the series' own inputs, beside the scene's */
+    return strncmp(path, "elements.", 9) == 0; /* inputs of the series alone */
 }
 
-/* A second value of what must be there and has no member of its own. */
+/* Returns a second value of a key that must be there and has no member of its own; NULL: none. */
 static const char *second_value(const char *path)
 {
     static const char *const values[][2] = {
@@ -62,8 +62,7 @@ static void change(const struct scene *scene, const struct key_case *key)
     }
 }
 
-/* Two scenes that differ in one key: it is there in one alone or, where it must be, has two values.
- */
+/* Two scenes differ in one key. One scene lacks the key or, where it must be, has another value. */
 TEST(test_every_key_counts)
 {
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
@@ -89,7 +88,7 @@ TEST(test_every_key_counts)
     }
 }
 
-/* What C alone can say, and what tables hold. */
+/* Members that only C can set, and values in tables, count. */
 TEST(test_what_no_key_names_counts)
 {
     const double numbers[] = {-2.0, -1.0, 1.0, 2.0};
@@ -138,7 +137,7 @@ TEST(test_what_no_key_names_counts)
     scene_clear(&scene);
 }
 
-/* The seabed's own mu0 is a NaN of any sign and payload; what is between members is nothing. */
+/* A NaN of any sign and payload is the seabed's own mu0. Bytes between members do not count. */
 TEST(test_nan_is_one_value_and_padding_none)
 {
     struct scene scene;

@@ -1,4 +1,4 @@
-/* Heights of the seabed from a file, and what is said about files that are no heights. */
+/* Tests heights of the seabed from a file, and messages about files that are no heights. */
 #include "claims.h"
 #include "scene_folder.h"
 #include "swath/raster_file.h"
@@ -34,7 +34,7 @@ static void expect_heights(double first_along_track_m, const float heights_m[ROW
     assert_memory_equal(relief->heights_m, heights_m, ROWS * COLUMNS * sizeof *heights_m);
 }
 
-/* Binary fractions throughout, so that no height is rounded. */
+/* All numbers are binary fractions, so that no height is rounded. */
 TEST(test_numbers_become_heights)
 {
     static const double numbers[ROWS * COLUMNS] = {0, 1, 2, 3, 4, 50, 60, 70, 255, 100, 9, 11};
@@ -50,7 +50,7 @@ TEST(test_numbers_become_heights)
     };
     for (size_t type = 0; type < COUNT(types); type++) {
         const struct raster_layout layout = {ROWS, COLUMNS, 1, types[type]};
-        float pixels[ROWS * COLUMNS]; /* room for any type's */
+        float pixels[ROWS * COLUMNS]; /* room for pixels of any type */
         for (size_t i = 0; i < COUNT(numbers); i++)
             assert_true(pixel_store(types[type], pixels, i, numbers[i]));
         write_heights(&layout, pixels);
@@ -64,7 +64,7 @@ TEST(test_numbers_become_heights)
     }
 }
 
-/* Heights add to what else there is. */
+/* Heights add to the other features. */
 TEST(test_heights_among_features)
 {
     static const float flat[ROWS * COLUMNS] = {0.0f};

@@ -1,18 +1,18 @@
-/* Scene files made to break the reader: bombs, nesting, sizes, cut and mutated files. */
+/* Tests scene files made to break the reader: bombs, nesting, sizes, cut and mutated files. */
 #include "claims.h"
 #include "scene_folder.h"
 
 #ifndef MUTATIONS
 #define MUTATIONS                                                                                  \
-    10000 /* of each example; a slow checker may compile with fewer, and the variable              \
-             SONJECT_MUTATIONS asks for as many as it says */
+    10000 /* number for each example; a slow checker may compile with fewer, and the variable      \
+             SONJECT_MUTATIONS asks for another number */
 #endif
 
 static const char *const examples[] = {"demo",    "elements", "figure4", "figure5",
                                        "figure6", "figure7",  "layers",  "relief",
                                        "shapes",  "surface",  "targets"};
 
-/* How many are tried of each example. */
+/* Returns the number of mutations to try of each example. */
 static size_t mutations_wanted(void)
 {
     const char *text = getenv("SONJECT_MUTATIONS");
@@ -20,14 +20,13 @@ static size_t mutations_wanted(void)
     return number > 0 ? (size_t)number : MUTATIONS;
 }
 
-/* A mutated name may be that of a folder. */
+/* True where a file cannot be read: a mutated name may be that of a folder. */
 static bool names_what_cannot_be_read(sonject_status status)
 {
     return status == SONJECT_ERROR_STORAGE && strstr(folder->report.message, ": cannot ") != NULL;
 }
 
-/* Each line of the message leads to a place of the text of the file at path, in the text's order.
- */
+/* Expects each line of the message to lead to a place in the text of the file at path, in order. */
 static void expect_places(const char *message, const char *path, const char *text, size_t bytes)
 {
     unsigned long last_line = 1, last_column = 1;
@@ -41,8 +40,8 @@ static void expect_places(const char *message, const char *path, const char *tex
             sscanf(at + strlen(path), ":%lu:%lu: %n", &line, &column, &length) != 2 ||
             length == 0 || at + strlen(path) + length >= end)
             fail_msg("no place or no text: %s", at);
-        /* Next line (0x85) and its like also end a line for YAML and take two bytes or more; so
-         * does the end of the file. */
+        /* Next line (0x85) and its like also end a line for YAML, and take two bytes or more. The
+         * end of the file is one more end. */
         if (line < 1 || line > lines_of(text, bytes) + bytes / 2 + 1 || column < 1 ||
             column > bytes + 1)
             fail_msg("a place that is not there: %s", at);
@@ -53,8 +52,8 @@ static void expect_places(const char *message, const char *path, const char *tex
     }
 }
 
-/* Reads the text from memory of its own size, which is quicker than from a file, and so that
- * reading beyond it is found; one with a zero byte, which only a file can have, from there. */
+/* Reads the text from memory of just its size, which finds reading beyond and is quicker than a
+ * file. A text with a zero byte, which only a file can have, is read from a file. */
 static sonject_status read_bytes(const char *text, size_t bytes)
 {
     if (memchr(text, 0, bytes)) {
@@ -72,7 +71,7 @@ static sonject_status read_bytes(const char *text, size_t bytes)
     return status;
 }
 
-/* Whatever the text, it is a scene or a message that leads to lines of it. */
+/* Expects any text to give a scene, or a message that leads to lines of the text. */
 static sonject_status expect_taken_or_explained(const char *text, size_t bytes)
 {
     const sonject_status status = read_bytes(text, bytes);
@@ -94,7 +93,7 @@ static void expect_saying(const char *text, size_t bytes, const char *part)
         fail_msg("the message is not '%s': %s", part, folder->report.message);
 }
 
-/* head, then middle count times, then tail; for free(). */
+/* Returns head, then middle count times, then tail. The caller frees the text. */
 static char *repeated(const char *head, const char *middle, size_t count, const char *tail)
 {
     char *text = malloc(strlen(head) + count * strlen(middle) + strlen(tail) + 1);
@@ -221,7 +220,7 @@ static size_t throw(uint64_t * dice, size_t sides)
 
 #define TEXT_CAPACITY 8192
 
-/* One change to the text: a byte, a special character, a piece lost, doubled or moved. */
+/* Sets a byte or special character, or loses, doubles or moves a piece. Returns the new size. */
 static size_t mutate(uint64_t *dice, char *text, size_t bytes)
 {
     static const char special[] = "{}[]:,#&*!|>'\"%@`-?\n\t \\.0-9e~";
@@ -254,7 +253,7 @@ static size_t mutate(uint64_t *dice, char *text, size_t bytes)
     }
 }
 
-/* One to four changes to a copy of the text; its bytes. */
+/* Makes one to four changes to a copy of the text. Returns the copy's size, bytes. */
 static size_t mutate_some(uint64_t *dice, char mutated[TEXT_CAPACITY], const char *text,
                           size_t bytes)
 {
@@ -293,7 +292,7 @@ TEST(test_mutated_examples)
             const size_t length = mutate_some(&dice, mutated, text, bytes);
             refused += expect_taken_or_explained(mutated, length) != SONJECT_OK;
         }
-        /* Many changes fall into comments; but the mutations must hurt. */
+        /* Many changes fall into comments, but the mutations must hurt. */
         print_message("%s: %zu of %zu refused\n", examples[i], refused, wanted);
         assert_true(refused > wanted / 4 && refused < wanted);
         free(text);

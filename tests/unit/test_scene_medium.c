@@ -1,4 +1,4 @@
-/* The water of scene files: layers, profiles, absorption. */
+/* Tests the water of scene files: layers, profiles, absorption. */
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -35,7 +35,7 @@ TEST(test_layers)
     assert_int_equal(folder->scene.water_layer_count, 0);
 }
 
-/* From 1490 m/s at 3 m to 1490.25 m/s at 12 m over the seabed. */
+/* Expects 1490 m/s at 3 m over the seabed, and 1490.25 m/s at 12 m. */
 static void expect_corners(const char *text)
 {
     const struct scene *scene = &folder->scene;
@@ -61,7 +61,7 @@ TEST(test_profiles)
                         "1490.25, 1490.25]}}\n" SURFACE);
 }
 
-/* Beside the scene file; of an override, where the user is. */
+/* A file is looked for beside the scene file, but an override's file where the user is. */
 TEST(test_files_are_looked_for_beside_the_scene)
 {
     static const char warm[] = "height_m sound_speed_mps\n1 1500\n2 warm\n";
@@ -113,7 +113,7 @@ TEST(test_absorption)
     assert_true(*absorption == sonject_absorption(455e3, -1.0, 5.0, 200.0, 8.0));
 }
 
-#define MEDIUM  BASE "medium:\n" /* its keys begin on line 5 */
+#define MEDIUM  BASE "medium:\n" /* the medium's keys begin on line 5 */
 #define LAYERS  MEDIUM "  layers:\n"
 #define PROFILE MEDIUM "  profile: "
 

@@ -1,5 +1,5 @@
-/* Meshes in scene files: how their numbers are meant, that one is kept however many shapes show it,
- * and what is said about those that cannot be read. */
+/* Tests meshes in scene files: how their numbers are meant, that one is kept however many shapes
+ * show it, and messages about meshes that cannot be read. */
 #include <sys/stat.h>
 
 #include "claims.h"
@@ -80,8 +80,8 @@ TEST(test_axes_turn)
         }
 }
 
-/* Objects, parts and targets that name one file have one mesh; other options, or another content,
- * make another one. Names are counted from the file that they stand in. */
+/* Objects, parts and targets that name one file share one mesh. Other options or another content
+ * make another mesh. Names count from the file that holds them. */
 TEST(test_meshes_are_shared)
 {
     static const char target[] = "sonject_target: 1\nshape: mesh\nmesh: corner.obj\n";
@@ -109,7 +109,7 @@ TEST(test_meshes_are_shared)
     assert_int_equal(read->objects[4].mesh, 3);
 }
 
-/* Reads a scene of one mesh, which comes from the store and goes back to it; its vertices. */
+/* Reads a scene of one mesh from the store, which gets it back. Returns the mesh's vertices. */
 static const float *read_stored(struct mesh_store *store, const char *keys)
 {
     struct report report = {{0}, NULL, NULL};
@@ -136,14 +136,14 @@ TEST(test_meshes_are_kept_from_scene_to_scene)
     assert_ptr_equal(read_stored(&store, "corner.obj"), first);
     assert_int_equal(store.count, 1);
     const uint64_t bytes = store.bytes;
-    /* with other options, and once the file has changed, it is another mesh */
+    /* other options, or a file that has changed, make another mesh */
     assert_ptr_not_equal(read_stored(&store, "{file: corner.obj, unit: cm}"), first);
     assert_int_equal(store.count, 2);
     write_file("corner.obj", corner, sizeof corner - 2);
     assert_ptr_not_equal(read_stored(&store, "corner.obj"), first);
     assert_int_equal(store.count, 3);
     assert_int_equal(store.bytes, 3 * bytes);
-    /* where it is full, the oldest gives way */
+    /* the oldest mesh leaves a store that is full */
     for (int i = 0; i < MESH_STORE_MESHES; i++) {
         char keys[64];
         snprintf(keys, sizeof keys, "{file: corner.obj, unit: %d}", i + 2);
@@ -198,7 +198,7 @@ TEST(test_meshes_that_cannot_be_read)
     expect_bad_mesh("a.stl", SONJECT_ERROR_INPUT, "the header says 2 triangles, the file holds 1");
 }
 
-/* As many as a scene may have, and one more. */
+/* A scene takes as many meshes as it may have, but not one more. */
 TEST(test_too_many_meshes)
 {
     char text[16384] = SCENE;
@@ -217,7 +217,7 @@ TEST(test_too_many_meshes)
                          "split it");
 }
 
-/* A sheet is refused unless it is said to be one, wherever it was read before. */
+/* A sheet is refused unless it is said to be one, even if it was read before. */
 TEST(test_open_meshes)
 {
     static const char sheet[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -231,7 +231,7 @@ TEST(test_open_meshes)
                     "does not enclose a volume");
 }
 
-/* A file in millimetres whose unit nobody gave, and one that is meant so. */
+/* A file in millimetres needs a unit, which may then be any. */
 TEST(test_a_size_that_no_target_has_asks_for_the_unit)
 {
     static const char sheet[] = "v 0 0 0\nv 1500 0 0\nv 0 700 0\nf 1 2 3\n";
@@ -252,7 +252,7 @@ static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
     assert_int_equal(scene_hash(&report, scene, NULL, text), SONJECT_OK);
 }
 
-/* What a result depends on: the mesh's content, not where it lies. */
+/* The mesh's content counts, not the path of its file. */
 TEST(test_the_hash_covers_the_mesh)
 {
     static const char text[] = MESH("{file: corner.obj, smooth: 30 deg}");
@@ -266,7 +266,7 @@ TEST(test_the_hash_covers_the_mesh)
     hash_of(&folder->scene, other);
     assert_string_equal(first, other);
     memcpy(changed, corner, sizeof corner);
-    *strchr(changed, '3') = '4'; /* of as many bytes */
+    *strchr(changed, '3') = '4'; /* same number of bytes */
     write_file("corner.obj", changed, sizeof changed - 1);
     expect_scene_taken(text);
     hash_of(&folder->scene, other);

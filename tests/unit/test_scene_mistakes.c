@@ -1,8 +1,8 @@
-/* All mistakes of a scene file are told at once, each by one line, in its order. */
+/* Tests that all mistakes of a scene file are told at once, a line each, in the file's order. */
 #include "claims.h"
 #include "scene_folder.h"
 
-/* Each is one mistake, whatever else is wrong. */
+/* Each wrong piece is one mistake, whatever else is wrong. */
 TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
 {
     static const struct {
@@ -23,7 +23,7 @@ TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
         {"burial: 0, ", "burial: {fraction: 2}, "},
         {"material: steel}\n", "material: {fluid: {density: 2}, roughness: 3}}\n"},
     };
-    static const size_t lines_of_last = 3; /* no speed, no fluid without it, the roughness */
+    static const size_t lines_of_last = 3; /* no speed, no fluid without a speed, the roughness */
     for (unsigned set = 0; set < 1u << COUNT(pieces); set++) {
         char text[2000] = "sonject: 1\n";
         size_t expected = 0;
@@ -75,7 +75,7 @@ TEST(test_lines_beyond_fifty_are_counted)
         sprintf(text + strlen(text), "  unheard_of_%d: 1\n", i);
     write_scene(text, strlen(text));
     assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
-    /* fifty, or, where the folder's name is long, as many as there is room for */
+    /* fifty, or as many as there is room for where the folder's name is long */
     const char *message = folder->report.message;
     const int told = (int)lines_of(message, strlen(message)) - 1;
     char rest[32];

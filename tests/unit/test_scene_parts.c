@@ -1,9 +1,9 @@
-/* Objects of parts in scene files: groups, surfaces that are inherited, files of targets, and what
- * is refused. */
+/* Tests objects of parts in scene files: groups, surfaces that are inherited, files of targets, and
+ * refusals. */
 #include "claims.h"
 #include "scene_folder.h"
 
-#define OBJECT BASE "objects:\n  - " /* five lines, its keys begin in column 5 */
+#define OBJECT BASE "objects:\n  - " /* five lines; keys begin in column 5 */
 
 static const struct scene_part *part_at(uint32_t index)
 {
@@ -40,8 +40,8 @@ TEST(test_parts_belong_to_their_objects)
     assert_int_equal(folder->scene.objects[1].shape, SHAPE_SPHERE);
 }
 
-/* A group turned to its own y: what lies ahead of its origin comes to lie across the object; what
- * is raised there, ahead of that, still points up. */
+/* A group is turned to its own y. Parts ahead of its origin come to lie across the object. A part
+ * raised there, ahead of the group, still points up. */
 TEST(test_groups_place_and_turn)
 {
     expect_scene_taken(OBJECT "parts:\n"
@@ -63,7 +63,7 @@ TEST(test_groups_place_and_turn)
     expect_vector(part_at(1)->axes[0], 1.0, 0.0, 0.0);
 }
 
-/* Of the object, the group, and what a part changes of it, wherever the keys stand. */
+/* A part inherits from object and group, and may change keys. Their order does not matter. */
 TEST(test_surfaces_are_inherited)
 {
     expect_scene_taken(OBJECT "parts:\n"
@@ -85,7 +85,7 @@ TEST(test_surfaces_are_inherited)
     assert_true(part_at(3)->shape.material.roughness_m == 0.007);
 }
 
-/* The text of `levels` lists of parts within each other. */
+/* Writes the text of `levels` lists of parts within each other. */
 static void nested_object(char *text, size_t capacity, int levels)
 {
     size_t length = (size_t)snprintf(text, capacity, "%sobjects: [{", BASE);
@@ -264,7 +264,7 @@ TEST(test_scenes_that_name_targets_wrongly)
                          "give one");
 }
 
-/* A file that is as long as no target is. */
+/* A file that is longer than any target is refused. */
 TEST(test_large_targets_are_refused)
 {
     const size_t bytes = 1024 * 1024 + 2;

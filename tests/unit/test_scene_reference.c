@@ -1,5 +1,5 @@
-/* The references of scene and campaign files, tools/scenes/KEYS.md and tools/campaigns/KEYS.md, are
- * made of the tables of keys. Run with two files' names this program writes them. */
+/* Tests that tools/scenes/KEYS.md and tools/campaigns/KEYS.md, the references of scene and campaign
+ * files, are those of the tables of keys. With two files' names the program writes them. */
 #include <jansson.h>
 
 #include "claims.h"
@@ -27,7 +27,7 @@ static const char *text_of(const json_t *key, const char *what)
     return text ? text : "";
 }
 
-/* Of a part, what stands in the object's table alike. */
+/* True for a part's key whose meaning is that of the object's key. */
 static bool is_repeated(const json_t *keys, const json_t *key)
 {
     const char *path = text_of(key, "path");
@@ -44,7 +44,7 @@ static bool is_repeated(const json_t *keys, const json_t *key)
     return false;
 }
 
-/* A "|" would end the table's cell. */
+/* Prints a cell, in which a "|" is escaped, as it would end the cell. */
 static void print_cell(FILE *out, const char *text)
 {
     fputc(' ', out);
@@ -77,7 +77,7 @@ static void print_key(FILE *out, const json_t *key)
     fputc('\n', out);
 }
 
-/* A table a section: the top level's name of the path. */
+/* Begins a table for each section, the path's name at the top level. */
 static void print_heading(FILE *out, const char *path, const char *before)
 {
     const size_t length = strcspn(path, ".[");
@@ -108,7 +108,7 @@ static void print_shape_keys(FILE *out)
     fputs(".\n", out);
 }
 
-/* Of a constant reflection there is no fluid. */
+/* Prints a material's row. A constant reflection has no fluid. */
 static void print_material(FILE *out, const char *name)
 {
     sonject_material_params material;
@@ -166,7 +166,7 @@ static void print_reference(FILE *out, const json_t *keys)
     print_materials(out);
 }
 
-/* One table, since a campaign has few keys; its sections say what they are for. */
+/* Prints one table, since a campaign has few keys and its sections say what they are for. */
 static void print_campaign_reference(FILE *out, const json_t *keys)
 {
     size_t i;
@@ -192,7 +192,7 @@ static const struct reference {
     {SOURCE_ROOT "/tools/campaigns/KEYS.md", &campaign_section, print_campaign_reference},
 };
 
-/* The whole of one, for free(). */
+/* Returns a whole reference. The caller frees it. */
 static char *make_reference(const struct reference *reference)
 {
     struct report report = {{0}, NULL, NULL};

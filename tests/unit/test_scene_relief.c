@@ -1,9 +1,9 @@
-/* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
+/* Tests the seabed's relief in scene files: what is taken or refused, and the ground itself. */
 #include "claims.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
 
-/* Five lines; a feature's keys begin in column 7. */
+/* The first five lines of a scene. A feature's keys begin in column 7. */
 #define SEEN_FROM(side)                                                                            \
     "sonject: 1\n"                                                                                 \
     "input: {uniform: {rows: 400, columns: 400}, geometry: {row_spacing: 2.5 cm, "                 \
@@ -47,7 +47,7 @@ static void ground_clear(struct ground *ground)
     water_clear(&ground->water);
 }
 
-/* Height at a place of the image. */
+/* Returns the height at a place of the image, m. */
 static double height_at(const struct ground *ground, double along, double slant_range)
 {
     return relief_height(ground->placements.relief, ground->view.is_mirrored ? -along : along,
@@ -93,7 +93,7 @@ TEST(test_features_lie_where_they_are_told)
     }
 }
 
-/* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
+/* Ripples have their phase and height, are level at the edges, and are alike from both sides. */
 TEST(test_ripples)
 {
 #define WAVES RIPPLES("heading: 30 deg, sharpness: 0.5, phase: 20 deg")
@@ -130,7 +130,7 @@ TEST(test_irregular_ripples)
     const size_t bytes = (size_t)relief->rows * relief->columns * sizeof(float);
     assert_memory_equal(relief->heights, same.placements.relief->heights, bytes);
     assert_true(memcmp(relief->heights, other.placements.relief->heights, bytes) != 0);
-    /* no higher than the water's layers and the checks are told */
+    /* no higher than the bounds that the water's layers and the checks use */
     double lowest, highest;
     relief_features_bounds(&folder->scene.relief, &lowest, &highest);
     assert_true(relief->lowest_m >= lowest && relief->highest_m <= highest);
@@ -139,7 +139,7 @@ TEST(test_irregular_ripples)
     ground_clear(&other);
 }
 
-/* What only shows when the scene is used. */
+/* Some mistakes show only when the scene is used. */
 TEST(test_refusals_in_use)
 {
     static const struct refusal cases[] = {

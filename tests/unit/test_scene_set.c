@@ -1,5 +1,5 @@
-/* Keys that calls set: the same scene as a file that says so, and one that stays as it was where a
- * key is refused. */
+/* Tests keys that calls set. They give the same scene as a file does, and a refused key leaves the
+ * scene as it was. */
 #include <sonject/sonject.h>
 
 #include "inject/scene_hash.h"
@@ -23,7 +23,7 @@ static void hash_of(const sonject_scene *scene, char text[HASH_TEXT_CAPACITY])
     EXPECT_OK(&context->report, scene_hash(&context->report, use(scene), "", text));
 }
 
-/* Releases both. */
+/* Expects equal hashes, and releases both scenes. */
 static void expect_same(sonject_scene *first, sonject_scene *second)
 {
     char hashes[2][HASH_TEXT_CAPACITY];
@@ -148,7 +148,7 @@ TEST(a_mesh_is_kept_while_its_own_keys_stay)
     uint32_t count;
     set(scene, "objects[0]",
         "{shape: mesh, mesh: {file: " SOURCE_ROOT "/tests/unit/tetrahedron.obj, unit: m}}");
-    use(scene)->meshes[0].welded = 12345; /* as no reading of the file says */
+    use(scene)->meshes[0].welded = 12345; /* a number that no reading of the file gives */
     set(scene, "injection.seed", "5");
     assert_true(use(scene)->meshes[0].welded == 12345);
     set(scene, "injection.seed", "-5");
@@ -243,7 +243,7 @@ TEST(tables_that_are_none_are_refused)
 {
     static const double values[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     static const struct {
-        const char *key, *columns, *message; /* of the call; else of the use: */
+        const char *key, *columns, *message; /* message of the call, or else `used` of the use */
         const char *used;
     } cases[] = {
         {"sonar.altitude", "a, b", "sonar.altitude: takes no array", NULL},

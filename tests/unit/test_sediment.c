@@ -1,4 +1,4 @@
-/* Backscatter of sediments against the values that the model's own handbook tabulates. */
+/* Tests backscatter of sediments against the values that the model's own handbook tabulates. */
 #include "claims.h"
 #include "scene/patch_view.h"
 #include "scene/sediment.h"
@@ -72,7 +72,7 @@ TEST(test_the_handbooks_table)
                                                   angles_deg[k] * PI / 180.0));
             if (fabs(found - columns[i].strengths_db[k]) > fabs(worst))
                 worst = found - columns[i].strengths_db[k];
-            /* the table's tenths, and what its own program rounded before the last of them */
+            /* the table's tenths, and roundings of its own program before the last of them */
             if (fabs(found - columns[i].strengths_db[k]) > 0.25)
                 print_error("phi %g, %g Hz, %g deg: %.2f, not %.1f\n", columns[i].phi,
                             columns[i].frequency_hz, angles_deg[k], found,
@@ -83,7 +83,7 @@ TEST(test_the_handbooks_table)
     assert_true(fabs(worst) <= 0.25);
 }
 
-/* The same handbook, table 2, page IV-6: medium sand, sandy gravel, sandy mud. */
+/* The numbers are in the handbook's table 2, page IV-6: medium sand, sandy gravel, sandy mud. */
 TEST(test_grain_sizes)
 {
     const struct sediment sand = sediment_of_grain_size(1.5), mud = sediment_of_grain_size(6.0);
@@ -104,7 +104,7 @@ TEST(test_lambert_is_that_at_the_angle)
     assert_true(sediment_lambert(0.5, 0.5, 0.5 * PI) <= 1.0 / PI);
 }
 
-/* Of a patch from range 0 on, what lies behind the bottom's first return is seabed. */
+/* In a patch from range 0 on, the seabed lies behind the bottom's first return. */
 TEST(test_lambert_is_that_of_the_seabed_in_view)
 {
     struct report report = {{0}, NULL, NULL};

@@ -1,5 +1,5 @@
-/* How far shapes reach, against clouds of points that lie in them, meshes against
- * the shapes that they stand for; and how they rest on the seabed. */
+/* Tests how far shapes reach, against clouds of points in them, and meshes, against the shapes that
+ * they stand for. Tests how objects rest on the seabed. */
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "kernel/reference_solids.h"
@@ -32,8 +32,8 @@ static sonject_object_params random_object(const struct solid_row *row)
     return object;
 }
 
-/* A point of a box that is a little larger than the shape, of a sheet where that is one; whether
- * the shape has it. */
+/* Draws a point of a box a little larger than the shape, or of a sheet's plane. Returns whether the
+ * shape holds the point. */
 static bool random_point(const struct shape_size *size, const struct body *body, double p[3])
 {
     for (int k = 0; k < 3; k++)
@@ -43,7 +43,7 @@ static bool random_point(const struct shape_size *size, const struct body *body,
     return body_holds(body, (struct point){p[0], p[1], p[2]});
 }
 
-/* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
+/* No point exceeds the extent, and some nearly reach it, as corners are rarely drawn. */
 TEST(test_clouds_of_points)
 {
     for (int i = 0; i < 3 * solid_row_count; i++) {
@@ -95,7 +95,7 @@ static void expect_extent(const sonject_object_params *object, double x, double 
         fail_msg("%s reaches %.12g m, not %.12g m", shape_name(object->shape), extent, expected);
 }
 
-/* A sphere, a box's corner, a ring. */
+/* The closed forms are those of a sphere, a box's corner, and a ring. */
 TEST(test_closed_forms)
 {
     const double s = sqrt(0.5);
@@ -179,7 +179,7 @@ static sonject_status place(struct placement *placement, double *burial_m, struc
     return status;
 }
 
-/* Whatever the shape, pose and side of the sonar: its lowest point is as deep as asked for. */
+/* Whatever the shape, pose and side of the sonar, the lowest point is as deep as asked for. */
 TEST(test_objects_rest_on_the_seabed)
 {
     for (int side = 0; side < 2; side++)
@@ -242,7 +242,7 @@ static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
     sample_clear(sample);
 }
 
-/* The shape itself, and a mesh of it. */
+/* Compares the extents of a shape and of its mesh. */
 static void compare_extents(const struct mesh *mesh, const sonject_object_params *object,
                             double tolerance_m)
 {
@@ -272,14 +272,14 @@ TEST(test_extents_of_meshes)
     object.height_m = 0.6;
     sample_box(&sample);
     make_mesh(&mesh, &sample);
-    compare_extents(&mesh, &object, 2e-7); /* each vertex to 6e-8 along each axis */
+    compare_extents(&mesh, &object, 2e-7); /* vertices are rounded by 6e-8 along each axis */
     mesh_clear(&mesh);
     object_init(&object);
     object.diameter_m = 2.0;
     sample_sphere(&sample, 5);
     make_mesh(&mesh, &sample);
-    /* between vertices by as much as facets lie under the sphere: up to 0.0008 (sides of 90 deg/32
-     * at the octahedron's corners, of up to twice that at its middles) */
+    /* between vertices extents are short by the depth of facets under the sphere, up to 0.0008
+     * (sides of 90 deg/32 at the octahedron's corners, up to twice as long at its middles) */
     compare_extents(&mesh, &object, 8e-4);
     mesh_clear(&mesh);
 }

@@ -1,4 +1,4 @@
-/* The law of speckle's logarithm, against closed forms. */
+/* Tests the law of speckle's logarithm against closed forms. */
 #include "base/memory.h"
 #include "claims.h"
 #include "measure/first_return.h"
@@ -13,7 +13,7 @@ static void moments_of(const struct speckle_law *law, double *mean, double *vari
         *variance += law->density[i] * pow(LAW_LEAST + i * LAW_STEP - *mean, 2.0);
 }
 
-/* Trigamma at whole numbers: pi^2 / 6 less the first squares' reciprocals. */
+/* At whole numbers trigamma is pi^2 / 6 less the first squares' reciprocals. */
 TEST(variance_of_a_logarithm_is_trigamma)
 {
     double exact = PI * PI / 6.0;
@@ -40,7 +40,7 @@ TEST(texture_adds_its_variance)
         }
 }
 
-/* One look's intensity is exponential: what lies below x of its mean is 1 - exp(-x). */
+/* One look's intensity is exponential: the share below x times the mean is 1 - exp(-x). */
 TEST(one_look_is_exponential)
 {
     struct speckle_law law;
@@ -53,7 +53,7 @@ TEST(one_look_is_exponential)
     }
 }
 
-/* A waterfall of two sides, of a level 20 dB over the water from a column that changes. */
+/* The waterfall has two sides, 20 dB over the water from a column on that changes by row. */
 TEST(a_nadir_lies_between_both_first_returns)
 {
     enum {

@@ -1,5 +1,5 @@
-/* Statistics of image patches; contrast, looks, texture and correlation of speckle that is known.
- */
+/* Tests statistics of image patches, and contrast, looks, texture and correlation of speckle that
+ * is known. */
 #include "plain_seabed.h"
 
 #include "image/shadow_floor.h"
@@ -26,13 +26,13 @@ static float *make_map(size_t rows, size_t columns, float value)
     return map;
 }
 
-/* 0...1, the same sequence for the same state. */
+/* Returns a number in 0...1. Equal states give equal sequences. */
 static double uniform(uint64_t *state)
 {
     return ((double)(next_random(state) >> 11) + 0.5) / 9007199254740992.0;
 }
 
-/* Intensity of speckle with mean 1. */
+/* Returns the intensity of speckle with mean 1. */
 static float speckle(uint64_t *state)
 {
     return (float)-log(uniform(state));
@@ -76,7 +76,7 @@ TEST(test_a_point_spreads_with_the_deviation_asked_for)
     }
 }
 
-/* Against the definition, pixel by pixel: a running mean with fractional ends, three times. */
+/* Smooths by the definition, pixel by pixel: a running mean with fractional ends, three times. */
 static void smooth_slowly(double *line, size_t count, double deviation)
 {
     const double variance = deviation * deviation / 3.0;
@@ -106,7 +106,7 @@ static void smooth_slowly(double *line, size_t count, double deviation)
     free(from);
 }
 
-/* Of lines of any length; the last two deviations give the mean of all. */
+/* Lines have any length. The last two deviations give the mean of all. */
 TEST(test_edges)
 {
     const double deviations[] = {0.2, 0.9, 2.0, 7.7, 30.0, 1e6, INFINITY};
@@ -156,12 +156,12 @@ TEST(test_mean_and_deviation)
     free(many);
 }
 
-/* Speckled seabed, 2 dB brighter and darker from place to place, with shadows of a size whose floor
- * is that much of the seabed about them, and columns of water, a thousandth of it, at the left. */
+/* Speckled seabed, 2 dB brighter and darker from place to place. Shadows of one size have a floor,
+ * a share of the seabed around. Columns at the left are water, a thousandth of the seabed. */
 struct made_shadows {
     double floor;
     size_t rows, columns, water;
-    bool is_open; /* each reaches the edge of the image */
+    bool is_open; /* each shadow reaches the edge of the image */
 };
 
 static struct shadow_floor floor_of(const struct made_shadows *made)
@@ -192,7 +192,7 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
 TEST(test_shadows_tell_the_floor_and_water_does_not)
 {
     for (double floor_db = -10.0; floor_db > -26.0; floor_db -= 3.0)
-        for (size_t size = 0; size < 2; size++) { /* also as narrow as a small stone's */
+        for (size_t size = 0; size < 2; size++) { /* shadows also as narrow as a small stone's */
             const struct made_shadows made = {pow(10.0, 0.1 * floor_db), size == 0 ? 4 : 12,
                                               size == 0 ? 24 : 40, 40, false};
             const struct shadow_floor found = floor_of(&made);
@@ -273,10 +273,10 @@ static struct speckle_statistics measure(const float *intensity, const uint8_t *
     return statistics;
 }
 
-/* Speckle of L looks: intensity contrast 1 / sqrt(L), amplitude contrast by Gamma functions. A
- * block of 32 x 32 pixels with some 500 independent ones knows the squared contrast 1 / L to
- * sqrt(20 / 500) / L or less, the median of 256 of them to 1.25 / 16 of that: 1.6 %; its skewness
- * takes 2 % more off. Tolerance 4 * 1.6 % + 2 %. */
+/* Speckle of L looks has the intensity contrast 1 / sqrt(L), and an amplitude contrast by Gamma
+ * functions. A block of 32 x 32 pixels, some 500 of them independent, gives the squared contrast 1
+ * / L to sqrt(20 / 500) / L or less. The median of 256 blocks errs by 1.25 / 16 of it, 1.6 %, and
+ * skewness takes off 2 % more. Tolerance 4 * 1.6 % + 2 %. */
 TEST(test_looks)
 {
     static const double expected_amplitude[] = {0.52272, 0.0, 0.0, 0.25289};
@@ -297,9 +297,9 @@ TEST(test_looks)
     free(intensity);
 }
 
-/* Correlation of single looks: sinc^2(1 / row width), exp(-4 ln 2 / (2 column width^2)) with the
- * width at half power; that of the median of 256 blocks is known to the error it tells itself, and
- * the trend and mean that are taken off a block cost 1 % of a correlation. */
+/* Single looks correlate by sinc^2(1 / row width) and exp(-4 ln 2 / (2 column width^2)), with the
+ * width at half power. The median of 256 blocks has the error that is measured with it. The trend
+ * and mean that are taken off a block cost 1 % of a correlation. */
 TEST(test_speckle_correlation)
 {
     static const double row_widths[] = {1.0, 1.5, 2.5};
@@ -316,14 +316,14 @@ TEST(test_speckle_correlation)
                     4.0 * told.along_track.lag_one_error + 0.015);
         expect_near(told.range.correlation[1], columns, 4.0 * told.range.lag_one_error + 0.015);
         assert_true(told.range.lag_one_error > 0.0 && told.range.lag_one_error < 0.02);
-        /* 1/e of exp(-x^2 / 2 deviation^2), between whole pixels within the chord's sag */
+        /* exp(-x^2 / 2 deviation^2) is 1/e here, to the sag of chords between whole pixels */
         expect_near(told.range.length_pixels, sqrt(2.0) * deviation, 0.25);
         free(intensity);
     }
 }
 
-/* K-distributed intensity: second moment 2 (1 + 1 / shape) of the squared mean. Blocks of so heavy
- * tails are skewed: their median lies up to 15 % below the mean. */
+/* K-distributed intensity has the second moment 2 (1 + 1 / shape) times the squared mean. Blocks
+ * with such heavy tails are skewed: their median lies up to 15 % below the mean. */
 TEST(test_texture)
 {
     float *intensity = make_map(ROWS, COLUMNS, 0.0f);
@@ -338,8 +338,8 @@ TEST(test_texture)
     free(intensity);
 }
 
-/* Neither bright stones in a tenth of the blocks, nor what is excluded, nor an even slope of the
- * level counts for more than the error. */
+/* Bright stones in a tenth of the blocks, excluded pixels, and an even slope of the level count for
+ * no more than the error. */
 TEST(test_what_does_not_count)
 {
     float *intensity = make_map(ROWS, COLUMNS, 0.0f);

@@ -1,4 +1,4 @@
-/* Files of tallies: what is written is read again, whatever is damaged is refused, chains of
+/* Tests files of tallies: sums are read as written, damaged files are refused, chains of
  * checkpoints cover a shard once, and sums that do not go together are not added up. */
 #include "base/file.h"
 #include "claims.h"
@@ -13,7 +13,7 @@ static const struct scene_source source = {
 static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
                                    0, 0, 0, INT64_MAX, INT64_MIN, 1, 0, 0,  3};
 
-/* What one process traced of a shard. */
+/* Returns the head for a part of a shard that one process traced. */
 static struct sums_head head_of(uint64_t shard, uint64_t shards, uint64_t first, uint64_t last,
                                 uint64_t is_last)
 {
@@ -80,7 +80,7 @@ CLEAN(test_what_is_written_is_read)
 {
     struct sums_file file;
     struct sums_head head = head_of(2, 3, 4, 9, 1);
-    /* so many that they do not stay in memory */
+    /* too many to stay in memory */
     const size_t many = ((size_t)33 << 20) / sizeof(int64_t);
     int64_t *values = calloc(many, sizeof *values);
     assert_non_null(values);
@@ -99,9 +99,9 @@ CLEAN(test_what_is_written_is_read)
     for (size_t i = 0; i < 2; i++)
         assert_string_equal(file.scene.overrides[i], overrides[i]);
     expect_sums(&file, 0, values, many, 1);
-    /* 5; -7; the three at the limits with the 3 behind two zeros */
+    /* runs of 5; of -7; of the three at the limits, with the 3 behind two zeros */
     expect_sums(&file, 1, sums, SUMS, 3);
-    /* none of its sums, other sums, and a taker for whom they do not fit */
+    /* a record that is not there, another number of sums, and a taker that refuses the sums */
     struct collected none = {NULL, 0};
     assert_int_equal(sums_file_runs(&file, &report, 2, SUMS, collect, &none), SONJECT_ERROR_INPUT);
     assert_int_equal(sums_file_runs(&file, &report, 1, SUMS + 1, collect, &none),
@@ -109,7 +109,7 @@ CLEAN(test_what_is_written_is_read)
     assert_int_equal(sums_file_runs(&file, &report, 1, SUMS, refuse_all, NULL),
                      SONJECT_ERROR_INPUT);
     assert_int_equal(none.runs, 0);
-    /* damaged after it was opened */
+    /* the file is damaged after it was opened */
     write_bytes(path, sums, sizeof sums);
     assert_int_equal(sums_file_runs(&file, &report, 1, SUMS, collect, &none), SONJECT_ERROR_INPUT);
     sums_file_close(&file);
@@ -146,7 +146,7 @@ CLEAN(test_no_damage_goes_unseen)
     EXPECT_OK(&report, sums_file_open(&file, &report, path));
     sums_file_close(&file);
     free(bytes);
-    /* what is not there, and what is no file, is not damaged */
+    /* a missing file and a folder are not damaged */
     assert_int_equal(sums_file_open(&file, &report, file_in("none.sums")), SONJECT_ERROR_STORAGE);
     assert_int_equal(sums_file_open(&file, &report, folder->path), SONJECT_ERROR_STORAGE);
 }
@@ -180,7 +180,7 @@ static void expect_draft_refused(const char *path, const struct draft *draft)
     expect_refused(path, draft->bytes, draft->count);
 }
 
-/* A head of no sums, as it is. */
+/* Returns a head alone, without sums. */
 static struct draft draft_of(struct sums_head head)
 {
     struct draft draft;
@@ -285,7 +285,7 @@ CLEAN(test_chains_cover_a_shard_once)
         {{{4, 9, true}}, 1, 0, 0, false},
         {{{0, 4, false}, {0, 6, false}, {4, 9, true}, {6, 8, false}}, 4, 9, 2, true},
         {{{0, 4, false}, {4, 7, false}, {0, 12, false}}, 3, 12, 1, false},
-        /* by their names 100 comes before 20 */
+        /* in the order of names 100 comes before 20 */
         {{{0, 10, false}, {10, 20, false}, {20, 100, false}, {100, 200, false}, {200, 200, true}},
          5,
          200,
@@ -302,7 +302,7 @@ CLEAN(test_chains_cover_a_shard_once)
             const struct span_of_file *file = &cases[i].files[k];
             write_sums(path, head_of(2, 3, file->first, file->last, file->is_last), sums, SUMS);
         }
-        write_sums(path, head_of(1, 3, 0, 99, true), sums, SUMS); /* another's */
+        write_sums(path, head_of(1, 3, 0, 99, true), sums, SUMS); /* another shard's */
         EXPECT_OK(&report, sums_folder_read(&all, &report, path, 0, SIZE_MAX, false));
         assert_int_equal(all.count, cases[i].count + 1);
         EXPECT_OK(&report, sums_chain_find(&chain, &report, &all, 2));
@@ -345,13 +345,13 @@ CLEAN(test_a_folder_gives_what_is_its_own)
     assert_int_equal(shards, 0);
     EXPECT_OK(&report, sums_folder_shards(&report, folder->path, 1, &shards));
     assert_int_equal(shards, 3);
-    /* what is damaged is refused; its own shard may drop it */
+    /* a damaged file is refused; its own shard may drop it */
     expect_folder(folder->path, 0, SIZE_MAX, false, SONJECT_ERROR_INPUT, 1);
     expect_folder(folder->path, 2, SIZE_MAX, true, SONJECT_OK, 1);
     assert_true(file_exists(damaged));
     expect_folder(folder->path, 1, SIZE_MAX, true, SONJECT_OK, 1);
     assert_false(file_exists(damaged));
-    /* what another shard traced is sound, and stays */
+    /* another shard's file is sound, and stays */
     write_sums(folder->path, head_of(2, 3, 4, 5, true), sums, SUMS);
     assert_int_equal(rename(other, damaged), 0);
     expect_folder(folder->path, 1, SIZE_MAX, true, SONJECT_ERROR_INPUT, 2);
@@ -399,7 +399,7 @@ CLEAN(test_only_what_goes_together_is_added_up)
     total[0] = 0;
     assert_int_equal(add_both(total), SONJECT_ERROR_INPUT);
     assert_int_equal(total[0], 0);
-    /* whose course is that of other launches; this checkpoint's own is of none at all */
+    /* the course is that of other launches; this checkpoint's own has none at all */
     struct checkpoint checkpoint;
     struct trace_counts counts;
     struct sums_file file;
@@ -411,7 +411,7 @@ CLEAN(test_only_what_goes_together_is_added_up)
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "traced other rays"));
     checkpoint_clear(&checkpoint);
-    /* with that course, but not all of its sums */
+    /* the course fits, but not all sums are taken */
     struct hash *hash = hash_begin();
     char nothing[HASH_TEXT_CAPACITY];
     assert_non_null(hash);

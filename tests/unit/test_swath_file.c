@@ -1,6 +1,6 @@
-/* Files that hold a swath: which sample is where, what a copy keeps, and files that are cut short,
- * damaged or not for sonject, whatever the answer of which is, it is one. SONJECT_MUTATIONS: how
- * many damaged ones of HDF5 are tried. */
+/* Tests files that hold a swath: which sample is where, and what a copy keeps. Files that are cut
+ * short, damaged or not for sonject must all get an answer. SONJECT_MUTATIONS: the number of
+ * damaged HDF5 files to try. */
 #include "file_drafts.h"
 
 #include "clean_folder.h"
@@ -40,10 +40,10 @@ struct kind {
     const char *name;
     void (*make)(struct draft *draft, int how);
     int how;
-    const char *array, *other; /* NULL: it has no names, or none but that */
+    const char *array, *other; /* NULL: the file has no names, or no other one */
     enum pixel_type type;
-    bool is_whole;  /* its numbers; else with fractions */
-    size_t at_most; /* bytes that one new sample changes; 0: the copy is written anew */
+    bool is_whole;  /* samples are whole numbers; else with fractions */
+    size_t at_most; /* bytes that one new sample changes; 0: the copy is a new file */
 };
 
 static const struct kind kinds[] = {
@@ -58,7 +58,7 @@ static const struct kind kinds[] = {
     {"e.mat", make_mat, COMPRESSED | PAIRS, "img", "packed", PIXEL_FLOAT32, false, 0},
 };
 
-/* Of the table, and behind it those of HDF5; false behind these. */
+/* Gives the kinds of the table, then those of HDF5. Returns false behind the last. */
 static bool next_kind(size_t i, struct kind *kind)
 {
     if (i < COUNT(kinds)) {
@@ -93,7 +93,7 @@ static sonject_status open_kind(struct report *by, const char *path, const struc
                                  kind->array, file);
 }
 
-/* The samples of a region, the last of which is another one where it is patched. */
+/* Computes the samples of a region. In a patched file the image's last sample is another one. */
 static void expected_samples(const struct kind *kind, const struct region *region, bool is_patched,
                              void *samples)
 {
@@ -113,7 +113,7 @@ static void expected_samples(const struct kind *kind, const struct region *regio
 static const struct region whole = {0, 0, ROWS, COLUMNS};
 static const struct region inside = {1, 2, 2, 2};
 
-/* OK: it was read; is_right: every sample is what it should be. */
+/* OK: the file was read. is_right: every sample is as it should be. */
 static sonject_status take(struct report *by, const char *path, const struct kind *kind,
                            bool is_patched, bool *is_right)
 {
@@ -143,7 +143,7 @@ static void expect_taken(struct report *by, const char *path, const struct kind 
         fail_msg("%s (%d): is wrong, or %s", kind->name, kind->how, by->message);
 }
 
-/* Reads it, patches one sample and reads the copy, which back gets. */
+/* Reads a file, patches one sample and reads the copy. back gets the copy. */
 static void read_and_patch(struct report *by, const char *path, const struct kind *kind,
                            struct draft *back)
 {
@@ -167,7 +167,7 @@ static void read_and_patch(struct report *by, const char *path, const struct kin
     read_draft(copy, back);
 }
 
-/* 0.1 and the like keep all their bits, and variables of MATLAB's before and behind every byte. */
+/* Numbers such as 0.1 keep all their bits, and MATLAB's variables around them keep all bytes. */
 CLEAN(a_patch_is_all_that_changes_here_and_in_a_child)
 {
     static struct draft draft, backs[2];
@@ -205,7 +205,7 @@ CLEAN(a_patch_is_all_that_changes_here_and_in_a_child)
 CLEAN(a_cut_file_is_never_taken)
 {
     static struct draft draft;
-    const struct kind *kind = &kinds[0]; /* of all its bytes each is needed */
+    const struct kind *kind = &kinds[0]; /* each of this file's bytes is needed */
     const char *path = file_in(kind->name);
     bool is_right;
     kind->make(&draft, kind->how);
@@ -216,7 +216,7 @@ CLEAN(a_cut_file_is_never_taken)
     }
 }
 
-/* Opens, asks, reads a corner or all, and writes a copy with it where there is a name for it. */
+/* Opens a file, reads a corner or all, and writes a copy with these samples; copy: name or NULL. */
 static sonject_status use_file(const char *path, const struct kind *kind, const char *copy)
 {
     static float samples[2 * 256 * 256];
@@ -242,8 +242,8 @@ static uint32_t draw(uint64_t *state)
     return (uint32_t)(next_random(state) >> 33);
 }
 
-/* Some bytes of it, most where structure is, or numbers of eight bytes; now and then its end is
- * missing. */
+/* Changes some bytes, most of them where structure is, or numbers of 4 or 8 bytes. Returns the
+ * number of bytes to keep: now and then the end is missing. */
 static size_t damage(struct draft *draft, uint64_t *state)
 {
     static const uint64_t numbers[] = {0, 1, 0xFF, 0xFFFF, 0x7FFFFFFF, UINT64_MAX, INT64_MAX};
@@ -259,8 +259,8 @@ static size_t damage(struct draft *draft, uint64_t *state)
     return draw(state) % 16 == 0 ? 1 + draw(state) % draft->count : draft->count;
 }
 
-/* The host goes on, and neither a process nor a file is left. Of some kinds a change of a byte is
- * either harmless or one of a sample. */
+/* The host goes on, and neither a process nor a file is left. In some kinds of files a changed byte
+ * is harmless, or changes a sample. */
 CLEAN(damaged_files_end_no_host)
 {
     static struct draft draft, damaged;
@@ -311,7 +311,7 @@ static void expect_refused(const char *name, const char *array, const void *byte
         fail_msg("'%s' is not in '%s'", words, report.message);
 }
 
-/* Beside a group that is damaged, too. */
+/* Arrays are found beside a damaged group, too. */
 CLEAN(arrays_are_told_by_their_names)
 {
     static struct draft draft;
@@ -329,7 +329,7 @@ CLEAN(arrays_are_told_by_their_names)
               swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, "/deep/img", &file));
     swath_file_close(&file);
     read_draft(path, &draft);
-    unsigned char *names = memmem(draft.bytes, draft.count, "HEAP", 4); /* of the root's links */
+    unsigned char *names = memmem(draft.bytes, draft.count, "HEAP", 4); /* the root's links */
     names = memmem(names + 4, draft.count - (size_t)(names + 4 - draft.bytes), "HEAP", 4);
     memset(names, 0, 4);
     write_draft(path, &draft, draft.count);
@@ -342,8 +342,8 @@ CLEAN(arrays_are_told_by_their_names)
 #endif
 }
 
-/* A float32 array of 2^40 x 2^40 in a hundred bytes; and headers that end within a word, behind
- * which nothing may be looked at, which tools that watch memory see. */
+/* Headers promise a float32 array of 2^40 x 2^40 in a hundred bytes, or end within a word. Nothing
+ * behind them may be looked at, which tools that watch memory see. */
 CLEAN(test_headers_of_numpy_that_lie_or_end_early)
 {
     static const char *const headers[] = {
@@ -369,7 +369,7 @@ CLEAN(test_headers_of_numpy_that_lie_or_end_early)
     }
 }
 
-/* 2^31 x 2^31 doubles, and 4 GB, in a few hundred bytes. */
+/* Headers promise 2^31 x 2^31 doubles, and 4 GB, in a few hundred bytes. */
 CLEAN(test_sizes_of_matlab_that_lie)
 {
     static struct draft draft, compressed;

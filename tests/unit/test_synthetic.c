@@ -1,6 +1,6 @@
-/* Synthetic seabeds against the statistics that they promise. Tolerances are five standard errors:
- * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
- * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
+/* Tests synthetic seabeds against the statistics that they promise. Tolerances are five standard
+ * errors. With N independent cells the relative standard error of a mean intensity is 1 / sqrt(N),
+ * and the error of a correlation is 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
 #include "claims.h"
 #include "image/statistics.h"
 #include "image/synthetic.h"
@@ -24,7 +24,7 @@ static sonject_synthetic_params plain(uint32_t rows, uint32_t columns)
     return synthetic;
 }
 
-/* The seabed, valid until the third call from this one. */
+/* Returns a seabed, valid until the third call from this one. */
 static float *make(const sonject_synthetic_params *synthetic, double along_track_pixels,
                    double range_pixels)
 {
@@ -50,7 +50,7 @@ static size_t count_of(const sonject_synthetic_params *synthetic)
     return (size_t)synthetic->rows * synthetic->columns;
 }
 
-/* Mean of the amplitude to the given power. */
+/* Returns the mean of the amplitude to the given power. */
 static double moment(const float *pixels, size_t count, int power)
 {
     double sum = 0.0;
@@ -69,8 +69,8 @@ static void expect_near(const char *what, double value, double expected, double 
         fail_msg("%s is %.6g, not %.6g +- %.2g", what, value, expected, tolerance);
 }
 
-/* At one pixel of resolution the intensity's correlation is 1/4 to either side in range, none along
- * the track: 1.5 pixels a cell, 107,000 cells, 5 / sqrt(N) = 0.015. */
+/* At one pixel of resolution the intensity's correlation is 1/4 to either side in range, 0 along
+ * the track. A cell has 1.5 pixels, so there are 107,000 cells, and 5 / sqrt(N) = 0.015. */
 TEST(test_rayleigh)
 {
     const sonject_synthetic_params synthetic = plain(400, 400);
@@ -85,10 +85,9 @@ TEST(test_rayleigh)
     expect_near("<I^2>/<I>^2", fourth / (square * square), 2.0, 2.0 * 0.015 * sqrt(5.0));
 }
 
-/* Distribution of the local intensity where it has a closed form: shape 1 is exponential, 1/2 the
+/* Two shapes have closed forms: with 1 the local intensity is exponential, with 1/2 it is the
  * square of a normal deviate. At 5 deviations probabilities and amplitudes go like exp(5 z), so
- * that linear interpolation between steps h = 1/256 is off by 25 h^2 / 8 = 5e-5 of the amplitude.
- */
+ * linear interpolation between steps h = 1/256 is off by 25 h^2 / 8 = 5e-5 of the amplitude. */
 TEST(test_texture_distribution)
 {
     struct speckle_texture exponential, squared_normal;
@@ -107,7 +106,7 @@ TEST(test_texture_distribution)
     }
 }
 
-/* Mean and variance of the texture by quadrature over the normal deviate. */
+/* The texture's mean and variance come from quadrature over the normal deviate. */
 TEST(test_texture_moments)
 {
     static const double shapes[] = {0.1, 0.5, 1.5, 4.0, 10.0, 100.0, 1e4, 9e5};
@@ -131,7 +130,7 @@ TEST(test_texture_moments)
     }
 }
 
-/* Complex correlation of pixels `rows` and `columns` apart. */
+/* Computes the complex correlation of pixels `rows` and `columns` apart. */
 static void correlate(const float *pixels, const sonject_synthetic_params *synthetic, size_t rows,
                       size_t columns, double *real_part, double *imaginary_part)
 {
@@ -152,8 +151,8 @@ static void correlate(const float *pixels, const sonject_synthetic_params *synth
 }
 
 /* The correlation of speckle is the autocorrelation of the point response: sinc(x / resolution)
- * along the track, 2^-(r / resolution)^2 in range. 800 x 800 pixels in cells of at most 2.3 x 2.4:
- * 5 / sqrt(N) = 0.015. */
+ * along the track, 2^-(r / resolution)^2 in range. There are 800 x 800 pixels in cells of at most
+ * 2.3 x 2.4, so 5 / sqrt(N) = 0.015. */
 TEST(test_correlation_is_the_point_response)
 {
     static const double resolutions[][2] = {{1.0, 1.0}, {2.3, 1.6}, {1.4, 0.7}};
@@ -192,7 +191,7 @@ TEST(test_seed_decides)
     assert_true(equal < 3);
 }
 
-/* FNV-1a over the bits, least significant byte of each pixel first. */
+/* Returns FNV-1a over the bits, least significant byte of each pixel first. */
 static uint32_t hash_of(const float *pixels, size_t count)
 {
     uint32_t hash = 2166136261u;
@@ -205,8 +204,8 @@ static uint32_t hash_of(const float *pixels, size_t count)
     return hash;
 }
 
-/* The same bits on every machine, compiler and optimisation level. The number changes only with the
- * model: nothing else in this file depends on it. */
+/* Bits are the same on every machine, compiler and optimisation level. The number changes only with
+ * the model: nothing else in this file depends on it. */
 TEST(test_same_bits_everywhere)
 {
     sonject_synthetic_params synthetic = plain(64, 80);
@@ -233,9 +232,9 @@ TEST(test_amplitude_is_that_of_complex_pixels)
                     1.0, 3e-7); /* two roundings of float */
 }
 
-/* Mean intensities of 20 x 20 blocks: 267 cells each, 6 % standard error, so that 6 dB apart (a
- * factor of 4) the two sediments stand clear of each other. Blocks across a border lie between:
- * medians are hardly moved by them. */
+/* Mean intensities of 20 x 20 blocks, of 267 cells each, have a standard error of 6 %. Sediments 6
+ * dB apart (a factor of 4) are then clearly separate. Blocks across a border lie between the two,
+ * but hardly move medians. */
 TEST(test_patch_step)
 {
     sonject_synthetic_params synthetic = plain(800, 800);
@@ -262,7 +261,7 @@ TEST(test_patch_step)
     expect_near("brighter sediment", median_of(bright, bright_count) / pow(10.0, 0.6), 1.0, 0.05);
 }
 
-/* Correlation of the intensities of pixels that far apart. */
+/* Returns the correlation of intensities `rows` and `columns` apart. */
 static double intensity_correlation(const float *pixels, const sonject_synthetic_params *synthetic,
                                     size_t rows, size_t columns)
 {
@@ -281,9 +280,9 @@ static double intensity_correlation(const float *pixels, const sonject_synthetic
     return products / squares;
 }
 
-/* Beyond the speckle's own correlation, that of the intensity, (<I I'> / <I>^2 - 1) * shape, is the
- * texture's: it has fallen to about 1/e at the texture length, a little less since Gamma deviates
- * follow normal ones less than in proportion, and to exp(-4) at twice that. 800 x 800 pixels are
+/* Beyond the speckle's own correlation, the intensity's, (<I I'> / <I>^2 - 1) * shape, is the
+ * texture's. It falls to about 1/e at the texture length, a little less since Gamma deviates follow
+ * normal ones less than in proportion, and to exp(-4) at twice the length. 800 x 800 pixels are
  * 4,000 cells, whose products scatter by about 3 / sqrt(N) = 0.05 in 1/shape. */
 TEST(test_texture_length)
 {
@@ -305,7 +304,7 @@ TEST(test_texture_length)
 }
 
 /* Ripples 0.6 m = 24 pixels long repeat across the crests, not along them, on about half of the
- * ground, and leave the mean intensity: the error of the mean is that of 30 wavelengths times 30
+ * ground. They do not change the mean intensity. Its error is that of 30 wavelengths times 30
  * uncorrelated places, each with an intensity deviation of about 1. */
 TEST(test_ripples)
 {

@@ -1,4 +1,4 @@
-/* Numbers from text: correctly rounded, and the same under a locale with a decimal comma. */
+/* Tests numbers from text: correctly rounded, and the same under a locale with a decimal comma. */
 #include "claims.h"
 
 #include <locale.h>
@@ -41,7 +41,7 @@ TEST(test_numbers)
                  {"1.5.2", 1.5, ".2"},
                  {"0x10", 0.0, "x10"},
                  {"007", 7.0, ""},
-                 {"inf", HUGE_VAL, ""}, /* as in YAML */
+                 {"inf", HUGE_VAL, ""}, /* YAML's words */
                  {".inf", HUGE_VAL, ""},
                  {"-.INF", -HUGE_VAL, ""},
                  {"1e999", HUGE_VAL, ""},
@@ -64,7 +64,7 @@ TEST(test_what_is_no_number)
     }
 }
 
-/* 2^53 + 1 lies halfway between two doubles; the smallest double's half likewise. */
+/* 2^53 + 1 lies halfway between two doubles, and so does half of the smallest double. */
 TEST(test_halfway_cases)
 {
     char text[3000];
@@ -81,7 +81,7 @@ TEST(test_halfway_cases)
     expect_number("1.7976931348623159e308", HUGE_VAL, "");
 }
 
-/* Half of the smallest double, 2^-1075, has 750 significant digits: exactly there it is a tie, and
+/* Half of the smallest double, 2^-1075, has 750 significant digits. Exactly these are a tie, and
  * any digit behind them decides. 2^-1075 = 5^1075 / 10^1075. */
 TEST(test_a_tie_of_750_digits)
 {
@@ -170,7 +170,7 @@ TEST(test_a_decimal_comma_changes_nothing)
     setlocale(LC_ALL, "C");
 }
 
-/* The next of texts that end with bars, and NULL behind the last. */
+/* Returns the next of texts that end with bars; NULL: none is left. */
 static const char *next_text(const char **texts, char text[32])
 {
     const size_t length = strcspn(*texts, "|");

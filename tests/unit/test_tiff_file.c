@@ -1,8 +1,8 @@
-/* TIFF files of every build: copies differ from their source in the patch alone, and files that
- * could not be changed so are refused. */
+/* Tests TIFF files of every build: copies differ from their source in the patch alone, and files
+ * that could not be changed in this way are refused. */
 #include "image_drafts.h"
 
-/* Bytes of b that are not those of a; what b is longer does not count. */
+/* Counts the bytes of b that are not those of a. Bytes beyond the end of a do not count. */
 static size_t count_changes(const unsigned char *a, size_t a_count, const unsigned char *b)
 {
     size_t changes = 0;
@@ -11,7 +11,7 @@ static size_t count_changes(const unsigned char *a, size_t a_count, const unsign
     return changes;
 }
 
-/* Builds it, reads it, and reads a copy. Returns the file's bytes, and the copy's. */
+/* Builds a file, reads it, and reads a copy. Returns the file's bytes. *copy: the copy's. */
 static const unsigned char *copy_build(const struct tiff_build *build, const struct region *region,
                                        const unsigned char *pixels, const unsigned char **copy,
                                        size_t *count, size_t *copy_count)
@@ -39,8 +39,7 @@ static void expect_copy_of_build(const struct tiff_build *build)
         assert_true(changes > 0 && changes <= patch_region.rows * patch_region.columns *
                                                   pixel_size(&build->layout));
     } else {
-        /* places and sizes of blocks, and entries of these; a second page and the text lie behind
-         */
+        /* places and sizes of blocks, and their entries; a second page and the text lie behind */
         const size_t directory = (size_t)number_from_bytes(
             source + (build->is_big ? 8 : 4), build->is_big ? 8 : 4, build->is_big_endian);
         const size_t blocks = build->is_tiled ? 4 * 3 : 4;
@@ -78,9 +77,9 @@ CLEAN(tiff_of_every_build_is_patched_in_place)
     }
 }
 
-/* The new place must come with the new size: here blocks grow a lot. And what TIFF says of one
- * strip for all rows: as many in it as a number can say. The image is taller than wide, and the
- * patch lies at its lower end. Deflate stores at most 65535 bytes at a time. */
+/* Blocks that grow a lot need a new place with the new size. One strip may hold all rows, which
+ * TIFF tells by the largest number of rows. The image is taller than wide, and the patch lies at
+ * its lower end. Deflate stores at most 65535 bytes at a time. */
 CLEAN(blocks_may_grow_and_hold_all_rows)
 {
     static const uint16_t codings[] = {COMPRESSION_NONE, COMPRESSION_LZW,
@@ -107,8 +106,8 @@ CLEAN(blocks_may_grow_and_hold_all_rows)
     }
 }
 
-/* Some writers store equal tiles once: changing one would change the others. A strip that is said
- * to lie where the directory is: the patch would destroy it, or make it another image's. */
+/* Some writers store equal tiles once: changing one would change the others. A patch to a strip
+ * that is said to lie in the directory would destroy it, or make it another image's. */
 CLEAN(blocks_in_each_others_place_are_refused)
 {
     const struct tiff_build build = {
@@ -143,7 +142,7 @@ CLEAN(blocks_in_each_others_place_are_refused)
     expect_message(path, "cannot be replaced");
 }
 
-/* What libtiff writes, and what tags say that are changed (tag, number), as it would not write. */
+/* libtiff writes the files. Some then get a tag (tag, number) that libtiff would not write. */
 CLEAN(tiff_that_is_not_for_sonject_is_refused)
 {
     const struct tiff_build other_order = {.layout = real32,
@@ -151,7 +150,7 @@ CLEAN(tiff_that_is_not_for_sonject_is_refused)
                                            .compression = COMPRESSION_ADOBE_DEFLATE,
                                            .predictor = 2};
     const struct {
-        struct tiff_build build; /* what differs from a plain one */
+        struct tiff_build build; /* differences from a plain one */
         const char *part;
         uint16_t tag;
         uint32_t number;
@@ -183,7 +182,7 @@ CLEAN(tiff_that_is_not_for_sonject_is_refused)
     }
 }
 
-/* A file with holes: only its head and its last row are really there. */
+/* The file has holes: only its head and its last row are really there. */
 CLEAN(more_than_4_gb_are_read)
 {
     const struct raster_layout layout = {70000, 70000, 1, PIXEL_UINT8};

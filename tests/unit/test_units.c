@@ -1,4 +1,4 @@
-/* Quantities with units. */
+/* Tests quantities with units. */
 #include "base/units.h"
 #include "claims.h"
 
@@ -11,8 +11,8 @@ static double value_of(enum quantity quantity, const char *text)
     return value;
 }
 
-/* What scene_keys.h does not have: its values are of all other units, to the last bit. Blanks do
- * not matter, angles are radians; infinity is only where it is written. */
+/* These cases are not in scene_keys.h, whose values have all other units, to the last bit. Blanks
+ * do not matter, and angles are radians. Infinity comes only where it is written. */
 TEST(test_units_and_blanks)
 {
     static const struct {
@@ -40,7 +40,7 @@ TEST(test_units_and_blanks)
     }
 }
 
-/* 1e-15 relative: pow is not bound to round correctly. */
+/* Tolerance 1e-15, relative: pow is not bound to round correctly. */
 TEST(test_levels_are_energy_ratios)
 {
     assert_true(value_of(QUANTITY_LEVEL, "0 dB") == 1.0);

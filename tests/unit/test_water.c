@@ -1,4 +1,4 @@
-/* Sound through level layers against Snell's law summed up in long double, against Fermat's
+/* Tests sound through level layers against Snell's law summed up in long double, against Fermat's
  * principle, the arcs of a linear profile and the power that a ray tube carries. */
 #include "claims.h"
 #include "medium/water.h"
@@ -53,11 +53,11 @@ static const struct {
     {ten_layers, COUNT(ten_layers), 21.0},     {ten_layers, COUNT(ten_layers), 12.5},
 };
 
-#define DEPTH 25.0 /* of the sea surface */
+#define DEPTH 25.0 /* water depth, m */
 
 typedef void each_way(const struct water *water, const struct reference_way *folded, double height);
 
-/* Every water, every way of up to three mirrors, points high and low. */
+/* Runs a test in every water, on every path of up to three mirrors, to points high and low. */
 static void on_every_way(each_way *run)
 {
     static const double heights[] = {0.0, 0.3, 1.7};
@@ -73,7 +73,7 @@ static void on_every_way(each_way *run)
                         water.layers, water.count, waters[w].sonar_height,
                         DEPTH,        bounces,     last == 1};
                     if (last == 1 && heights[h] == 0.0)
-                        continue; /* the mirror itself */
+                        continue; /* the point is on the mirror */
                     run(&water, &folded, heights[h]);
                 }
         water_clear(&water);
@@ -85,7 +85,7 @@ static double signed_angle(const struct reference_way *folded, double angle)
     return folded->bounces > 0 && folded->comes_from_seabed ? -angle : angle;
 }
 
-/* Grazing angles in the straight water for which there is a ray: cos < c/c_max. */
+/* Finds grazing angles in the straight water for which there is a ray: cos < c/c_max. */
 #define ANGLES 9
 static void find_angles(const struct reference_way *folded, double height, double angles[ANGLES])
 {
@@ -98,7 +98,7 @@ static void find_angles(const struct reference_way *folded, double height, doubl
 
 /* ---- Snell ---- */
 
-static double largest_error; /* relative, of ranges and times */
+static double largest_error; /* largest relative error of ranges and times */
 
 static void note_error(double measured, long double expected)
 {
@@ -140,7 +140,7 @@ TEST(test_snell)
     print_message("largest relative error of range and time: %.2g\n", largest_error);
 }
 
-/* Whether long double is wider than double: valgrind's is not. */
+/* Returns whether long double is wider than double. Valgrind's is not. */
 static bool has_wide_reference(void)
 {
     const volatile long double small = 1e-18L;
@@ -148,7 +148,7 @@ static bool has_wide_reference(void)
     return sum != 1.0L;
 }
 
-/* The ray found for two points comes to the point, and its time is that of the point. */
+/* Expects the ray found for two points to come to the point, in the time of the point. */
 static void compare_two_points(const struct water *water, const struct reference_way *folded,
                                double height)
 {
@@ -162,13 +162,13 @@ static void compare_two_points(const struct water *water, const struct reference
         const double fastest_speed = reference_fastest(folded, height);
         const long double p = cosl((long double)angle) / c;
         const struct reference_ray sum = reference_sum(folded, height, p);
-        /* what the angle's last digits are worth in range: it is an arc cosine near 1 */
+        /* error of the range by the angle's last digits, as the angle is an arc cosine near 1 */
         const double digit = 2e-15 * (double)(sinl(fabsl((long double)angle)) / c * sum.growth);
-        /* and the sum itself loses digits towards total reflection */
+        /* the sum itself, too, loses digits towards total reflection */
         if (p * fastest_speed < 1.0L - (has_wide_reference() ? 1e-13L : 1e-5L))
             expect_within("range of the ray found", (double)sum.range, ranges[i],
                           1e-10 * ranges[i] + digit);
-        /* the time errs by p times that, which the point's own range leaves out */
+        /* the sum's time errs by p times its range error, which is taken off */
         const double measured = ray_path_range(&path, ranges[i], height);
         const long double expected = sum.time * c + p * c * (ranges[i] - sum.range);
         if (digit < 1e-3 * ranges[i]) {
@@ -185,8 +185,8 @@ TEST(test_two_points)
     print_message("largest relative error of the time between two points: %.2g\n", largest_error);
 }
 
-/* Fermat: of all ways over a plane between two waters sound takes the quickest. Nothing of Snell's
- * law is in here. */
+/* Fermat's principle: sound takes the quickest of all paths through a plane between two waters.
+ * Nothing of Snell's law is in here. */
 TEST(test_fermat)
 {
     static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
@@ -218,18 +218,18 @@ TEST(test_fermat)
 
 /* ---- a linear profile ---- */
 
-/* Time along the arc between two points, exactly. */
+/* Returns the exact time along the arc between two points, s. */
 static double arc_time(double bottom_speed, double growth, double range, double high, double low)
 {
     const double one = bottom_speed + growth * high;
     const double other = bottom_speed + growth * low;
     const double step = high - low;
     const double q = growth * growth * (range * range + step * step) / (2.0 * one * other);
-    /* acosh(1 + q) without cancelling */
+    /* acosh(1 + q) without cancellation */
     return log1p(q + sqrt(q * (q + 2.0))) / fabs(growth);
 }
 
-/* As scene files write it, also with targets that reach through many of its layers. */
+/* The profile is like one of scene files, also with targets that reach through many layers. */
 TEST(test_linear_profiles_bend_rays_to_arcs)
 {
     static const double heights[] = {0.0, 25.0};
@@ -293,8 +293,8 @@ TEST(test_straight_water)
 
 /* ---- the ray tube ---- */
 
-/* Width of the wavefront: rays half a step apart in angle, their points at one height seen across
- * the ray. Power: what is sent into an angle, here and from the point back. */
+/* The wavefront's width comes from two rays, half a step in angle to either side, by their points
+ * at one height seen across the ray. Power is sent into an angle, here and back from the point. */
 static void compare_tube(const struct water *water, const struct reference_way *folded,
                          double height)
 {
@@ -325,7 +325,7 @@ static void compare_tube(const struct water *water, const struct reference_way *
                         c * c / (c0 * c0), 1e-5);
         const double amplitude = ray.spreading / (ray.ground_range_m * ray.wavefront_m);
         expect_relative("intensity there and back", amplitude * amplitude, there * back, 2e-5);
-        /* wavefronts run on: 1 m per m */
+        /* wavefronts grow by 1 m per m */
         if (height >= 0.3) {
             const struct arrival lower =
                 ray_path_arrival(&path, signed_angle(folded, angles[i]), height - 0.2);
@@ -343,7 +343,7 @@ TEST(test_ray_tube)
 
 /* ---- planes where density differs ---- */
 
-/* 1 - R^2 of a plane between two fluids for sound of p = cos/c. */
+/* Returns 1 - R^2 of a plane between two fluids for sound of p = cos/c. */
 static double plane_passes(const struct water_layer *one, const struct water_layer *other, double p)
 {
     const double z1 = one->density * one->speed_mps / sqrt(1.0 - pow(p * one->speed_mps, 2.0));
@@ -355,8 +355,8 @@ static double plane_passes(const struct water_layer *one, const struct water_lay
 TEST(test_transmission)
 {
     static const struct water_layer light[] = {{0.0, 1490.0, 1030.0},
-                                               {6.0, 1510.0, 1030.0}, /* all passes this plane */
-                                               {9.0, 1510.0, 400.0},  /* density alone */
+                                               {6.0, 1510.0, 1030.0}, /* this plane passes all */
+                                               {9.0, 1510.0, 400.0},  /* density alone differs */
                                                {12.0, 1470.0, 700.0}};
     struct water_layer same[4];
     memcpy(same, light, sizeof same);
@@ -372,7 +372,7 @@ TEST(test_transmission)
         {light, 4, 20.0, DEPTH, 2, true}, {light, 4, 10.0, DEPTH, 2, false},
         {light, 4, 20.0, DEPTH, 3, true}, {light, 4, 20.0, DEPTH, 3, false},
     };
-    /* how often each way crosses the planes at 9 m and at 12 m */
+    /* numbers of crossings, for each path, of the planes at 9 m and at 12 m */
     static const int crossings[][2] = {{1, 1}, {1, 0}, {1, 1}, {1, 1},
                                        {1, 1}, {3, 2}, {3, 3}, {3, 3}};
     for (size_t i = 0; i < COUNT(ways); i++)
@@ -392,15 +392,15 @@ TEST(test_transmission)
     water_clear(&plain);
 }
 
-/* As the layers' contrast goes, so does what they do; and where density alone differs rays are
- * straight, but not all of their sound passes. */
+/* The effect of layers goes with their contrast. Where density alone differs rays are straight, but
+ * not all of their sound passes. */
 TEST(test_slight_contrasts)
 {
     static const struct {
         struct water_layer layers[2];
         double passing, tolerance;
     } cases[] = {
-        /* 1e-9 over the square of the angle */
+        /* tolerance: 1e-9 over the square of the angle */
         {{{0.0, 1500.0, 1.0}, {8.0, 1500.0 + 1.5e-6, 1.0}}, 1.0, 3e-7},
         {{{0.0, 1500.0, 3.0}, {8.0, 1500.0, 1.0}}, 0.75, 1e-12},
     };
@@ -446,7 +446,7 @@ TEST(test_total_reflection)
     assert_true(is_infinite(&last));
     const struct arrival first = ray_path_arrival(&path, least * (1.0 + 1e-12), 0.0);
     assert_true(first.ground_range_m > 1e4 && isfinite(first.ground_range_m));
-    /* far ranges run level through the fast layer: all of the growth of time is at its speed */
+    /* far rays run level through the fast layer, whose speed gives all growth of time */
     double before = 0.0;
     for (double range = 200.0; range < 3e5; range *= 1.5) {
         const double angle = ray_path_grazing(&path, range, 0.2);
@@ -459,7 +459,7 @@ TEST(test_total_reflection)
             assert_true(slope > 0.99 * 1490.0 / 1540.0 && slope < 1490.0 / 1540.0 * (1.0 + 1e-9));
         }
         before = time;
-        /* at best level through the fast layer, at worst with both slow layers on top of that */
+        /* at best the path is level in the fast layer, at worst it has both slow layers on top */
         const double level = range * 1490.0 / 1540.0;
         const double steep = 14.8 * sin(least);
         assert_true(time > level + steep && time < level + steep + 5.0 * 1490.0 / 1540.0);
@@ -512,7 +512,7 @@ TEST(test_ground_range)
 
 /* ---- laying the water ---- */
 
-/* Time straight up to a height. */
+/* Returns the time straight up to a height, s. */
 static double time_up(const struct water_layer *layers, size_t count, double height)
 {
     const struct reference_way up = {layers, count, height, 0.0, 0, false};
@@ -526,7 +526,7 @@ TEST(test_joined_layers)
                                                 {0.9, 1492.0, 1.0},
                                                 {1.3, 1492.5, 1.0},
                                                 {3.0, 1510.0, 1.0}};
-    /* highest target, and layers that are left: what lies over it keeps its own speed */
+    /* highest target, m, and number of layers left; layers over the target keep their speed */
     static const struct {
         double highest;
         size_t count;
@@ -558,13 +558,13 @@ static void expect_refused(const struct water_layer *layers, size_t count)
                      SONJECT_ERROR_INPUT);
     print_message("%s\n", report.message);
     assert_null(water.layers);
-    /* nothing stands that high */
+    /* no target stands so high */
     lay(&water, layers, count, 0.4);
     assert_int_equal(water.count, count);
     water_clear(&water);
 }
 
-/* Up to 1 m both halves count alike: each is half the difference away from what joins them. */
+/* Up to 1 m both halves count alike: each is half the difference away from the joined layer. */
 TEST(test_refused_layers)
 {
     struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {0.5, 1500.0, 1.0}, {2.0, 1530.0, 1.2}};
