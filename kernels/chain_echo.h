@@ -108,7 +108,7 @@ FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
 /* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct chain_echo {
     float energy[WIDTH]; /* quanta */
-    float chance[WIDTH]; /* uniform deviate for rounding */
+    float dither[WIDTH]; /* uniform deviate for rounding */
     int is_heard[WIDTH]; /* -1: there is some, in bins that exist; 0: there is none */
     int bin[WIDTH];      /* the first of two */
     float later[WIDTH];  /* share of the second */
@@ -142,16 +142,16 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
     for (int i = 0; i < count; i++) {
         const int lane = heard[i];
         const float energy = echo->energy[lane];
-        const float chance = echo->chance[lane];
+        const float dither = echo->dither[lane];
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
-        GLOBAL TALLY *lines = tallies + (PLACE)plane * chains->tally_strips * fan->bins;
+        GLOBAL TALLY *lines = tallies + (LONG_INDEX)plane * chains->tally_strips * fan->bins;
         if (strip >= 0 && strip < chains->tally_strips)
-            tally_shares(lines + (PLACE)strip * fan->bins, fan->bins, 1, echo->bin[lane],
-                         echo->later[lane], energy, chance, &outcome->faults);
+            tally_shares(lines + (LONG_INDEX)strip * fan->bins, fan->bins, 1, echo->bin[lane],
+                         echo->later[lane], energy, dither, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
-            tally_shares(lines + (PLACE)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
-                         echo->later[lane], energy, chance, &outcome->faults);
+            tally_shares(lines + (LONG_INDEX)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
+                         echo->later[lane], energy, dither, &outcome->faults);
     }
     outcome->impulses += (RECORD_WORD)count;
 }
@@ -240,7 +240,7 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     const mask is_heard =
         ~MASK_OF(kept <= 0.0f) & MASK_OF(bins.bin >= -1) & MASK_OF(bins.bin < fan->bins);
     STORE_VFLOAT(kept, echo->energy);
-    STORE_VFLOAT(chain->chance, echo->chance);
+    STORE_VFLOAT(chain->dither, echo->dither);
     STORE_VINT(is_heard, echo->is_heard);
     STORE_VINT(bins.bin, echo->bin);
     STORE_VFLOAT(bins.later, echo->later);

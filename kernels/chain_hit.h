@@ -198,7 +198,7 @@ struct chain {
     word number;    /* number of the ray, for its random numbers */
     vfloat energy;  /* the ray's solid angle times the weights so far, sr, in quanta of the hit's
                        order */
-    vfloat chance;  /* uniform deviate for rounding its echoes */
+    vfloat dither;  /* uniform deviate for rounding its echoes */
     vfloat range;   /* range of the first hit less the reference range */
     vfloat length;  /* path from the first hit to this one, m */
     vfloat first_x; /* along-track position of the first hit */

@@ -12,7 +12,7 @@ __kernel void hear_elements(__global const struct impulse_grid_record *grid_buff
 {
     const struct impulse_grid_record grid = *grid_buffer;
     const struct element_pair_record pair = pairs[get_global_id(1)];
-    const PLACE at = (PLACE)get_global_id(1) * stride;
+    const LONG_INDEX at = (LONG_INDEX)get_global_id(1) * stride;
     hear_grid(&grid, &pair, starts, bins, impulses_real, impulses_imaginary, (int)get_global_id(0),
               lines_real + at, lines_imaginary + at);
 }
@@ -24,8 +24,8 @@ __kernel void pulse_elements(__global const float *lines_real,
                              __global const float *pulse_imaginary, int taps, int series_stride,
                              __global float *series_real, __global float *series_imaginary)
 {
-    const PLACE line = (PLACE)get_global_id(1) * stride;
-    const PLACE series = (PLACE)get_global_id(1) * series_stride;
+    const LONG_INDEX line = (LONG_INDEX)get_global_id(1) * stride;
+    const LONG_INDEX series = (LONG_INDEX)get_global_id(1) * series_stride;
     pulse_series(lines_real + line, lines_imaginary + line, fine, pulse_real, pulse_imaginary, taps,
                  (int)get_global_id(0) * WIDTH, series_real + series, series_imaginary + series);
 }

@@ -83,7 +83,7 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
  * call of the kernel or in several. */
 FUNCTION int strip_of_group(const struct fan_record *fan, int group)
 {
-    const PLACE turn = (PLACE)fan->first_turn + group / fan->segments;
+    const LONG_INDEX turn = (LONG_INDEX)fan->first_turn + group / fan->segments;
     return (int)(turn * fan->strip_stride % fan->strips);
 }
 

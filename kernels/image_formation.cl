@@ -16,7 +16,7 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     STORE_VFLOAT(a, lanes_a);
     STORE_VFLOAT(b, lanes_b);
     for (int lane = 0; lane < WIDTH && first + lane < bins; lane++) {
-        const PLACE at = (PLACE)strip * bins + first + lane;
+        const LONG_INDEX at = (LONG_INDEX)strip * bins + first + lane;
         const float amplitude = ROOT_OF_ONE(energy[at]);
         out_real[at] = amplitude * lanes_a[lane];
         out_imaginary[at] = amplitude * lanes_b[lane];
@@ -28,7 +28,7 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
 __kernel void sort_bins(__global const float *lines, int first_line, int bins, int first,
                         int bins_per_pixel, int stride, __global float *sorted)
 {
-    const PLACE strip = (PLACE)get_global_id(1);
+    const LONG_INDEX strip = (LONG_INDEX)get_global_id(1);
     sort_bins_of(lines + (first_line + strip) * bins, bins, first, bins_per_pixel, stride,
                  (int)get_global_id(0) * WIDTH, sorted + strip * stride * bins_per_pixel);
 }
@@ -41,7 +41,7 @@ __kernel void compress_range(__global const float *sorted_real,
                              int first_out_strip, __global float *out_real,
                              __global float *out_imaginary)
 {
-    const PLACE strip = (PLACE)get_global_id(1);
+    const LONG_INDEX strip = (LONG_INDEX)get_global_id(1);
     __global const float *sorted = get_global_id(2) ? sorted_imaginary : sorted_real;
     __global float *out = get_global_id(2) ? out_imaginary : out_real;
     compress_range_of(sorted + strip * sorted_stride * bins_per_pixel, sorted_stride,
@@ -56,9 +56,9 @@ __kernel void compress_range_complex(
     __global const float *pulse_real, __global const float *pulse_imaginary, int taps, int stride,
     int first_out_strip, __global float *out_real, __global float *out_imaginary)
 {
-    const PLACE strip = (PLACE)get_global_id(1);
-    const PLACE in = strip * sorted_stride * bins_per_pixel;
-    const PLACE out = (strip + first_out_strip) * stride;
+    const LONG_INDEX strip = (LONG_INDEX)get_global_id(1);
+    const LONG_INDEX in = strip * sorted_stride * bins_per_pixel;
+    const LONG_INDEX out = (strip + first_out_strip) * stride;
     compress_complex_of(sorted_real + in, sorted_imaginary + in, sorted_stride,
                         filled[first_line + strip], first, bins_per_pixel, pulse_real,
                         pulse_imaginary, taps, (int)get_global_id(0) * WIDTH, out_real + out,

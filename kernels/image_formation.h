@@ -132,7 +132,7 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
         if (!is_filled_at(filled[strip - aspects.first_strip], column))
             continue;
         const vfloat a =
-            LOAD_VFLOAT(lines + (PLACE)(strip - aspects.first_strip) * stride + column);
+            LOAD_VFLOAT(lines + (LONG_INDEX)(strip - aspects.first_strip) * stride + column);
         GLOBAL const float *tap =
             response + (first_row + FORM_ROWS - 1) * aspects.strips_per_row - strip + aspects.reach;
         UNROLLED
@@ -140,7 +140,7 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
             sum[r] += a * tap[r * aspects.strips_per_row];
     }
     for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++)
-        STORE_VFLOAT(sum[r], out + (PLACE)(first_row + r) * stride + column);
+        STORE_VFLOAT(sum[r], out + (LONG_INDEX)(first_row + r) * stride + column);
 }
 
 /* The responses of a set of rows and blocks of columns. Each has the taps of struct aspects. */
@@ -161,9 +161,9 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
                                 int column, GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
     const int taps = 2 * aspects.reach + 1;
-    const PLACE block = (PLACE)(column / set.columns_per_block) * set.block_step;
+    const LONG_INDEX block = (LONG_INDEX)(column / set.columns_per_block) * set.block_step;
     for (int row = first_row; row < first_row + FORM_ROWS && row < rows; row++) {
-        const PLACE first_tap = (PLACE)(row - set.first_row) * set.row_step + block;
+        const LONG_INDEX first_tap = (LONG_INDEX)(row - set.first_row) * set.row_step + block;
         const int last = row * aspects.strips_per_row + aspects.reach; /* strip of tap 0 */
         int low = last - taps + 1;
         int high = last + 1;
@@ -174,7 +174,7 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
         for (int strip = low; strip < high; strip++) {
             if (!is_filled_at(filled[strip - aspects.first_strip], column))
                 continue;
-            const PLACE at = (PLACE)(strip - aspects.first_strip) * stride + column;
+            const LONG_INDEX at = (LONG_INDEX)(strip - aspects.first_strip) * stride + column;
             const vfloat a = LOAD_VFLOAT(lines_real + at);
             const vfloat b = LOAD_VFLOAT(lines_imaginary + at);
             const float w = response_real[first_tap + last - strip];
@@ -182,7 +182,7 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
             sum_real += a * w - b * v;
             sum_imaginary += a * v + b * w;
         }
-        const PLACE at = (PLACE)row * stride + column;
+        const LONG_INDEX at = (LONG_INDEX)row * stride + column;
         STORE_VFLOAT(sum_real, out_real + at);
         STORE_VFLOAT(sum_imaginary, out_imaginary + at);
     }

@@ -9,18 +9,18 @@
 #ifndef SONJECT_KERNELS_LAYOUT_H
 #define SONJECT_KERNELS_LAYOUT_H
 
-/* The types of the members, of sums (TALLY) and of indices into large arrays (PLACE). */
+/* The types of the members, of sums (TALLY) and of indices into large arrays (LONG_INDEX). */
 #ifdef __OPENCL_C_VERSION__
 #define RECORD_INT  int
 #define RECORD_WORD uint
 #define TALLY       long
-#define PLACE       long
+#define LONG_INDEX  long
 #else
 #include <stdint.h>
 #define RECORD_INT  int32_t
 #define RECORD_WORD uint32_t
 #define TALLY       int64_t
-#define PLACE       int64_t
+#define LONG_INDEX  int64_t
 #endif
 
 /* Programs are built in two variants. The plain one suits most scenes: no meshes, no relief, no
@@ -348,7 +348,7 @@ struct multibounce_echo_record {
     RECORD_INT bin;
     float real_part, imaginary_part; /* quanta */
     float fraction;                  /* share of a bin beyond `bin` */
-    float chance;                    /* uniform deviate for rounding (tally.h) */
+    float dither;                    /* uniform deviate for rounding (tally.h) */
 };
 
 /* The counts of a work-item. */

@@ -17,7 +17,7 @@ FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, 
     int c = (int)(column + 0.5f);
     r = r < 0 ? 0 : r >= fan->map_rows ? fan->map_rows - 1 : r;
     c = c < 0 ? 0 : c >= fan->map_columns ? fan->map_columns - 1 : c;
-    return map[(PLACE)r * fan->map_columns + c];
+    return map[(LONG_INDEX)r * fan->map_columns + c];
 }
 
 /* Returns the slant range of a point from the track, less the reference range. */

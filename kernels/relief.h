@@ -17,8 +17,8 @@ FUNCTION struct relief_view relief_of(const struct fan_record *fan,
     struct relief_view relief;
     relief.grid = (GLOBAL const struct relief_record *)words;
     relief.heights = (GLOBAL const float *)(relief.grid + 1);
-    relief.slopes = relief.heights + (PLACE)relief.grid->rows * relief.grid->columns;
-    relief.blocks = relief.slopes + 2 * (PLACE)relief.grid->rows * relief.grid->columns;
+    relief.slopes = relief.heights + (LONG_INDEX)relief.grid->rows * relief.grid->columns;
+    relief.blocks = relief.slopes + 2 * (LONG_INDEX)relief.grid->rows * relief.grid->columns;
     return relief;
 }
 
@@ -68,7 +68,7 @@ FUNCTION float slope_at(struct relief_view relief, float row, float column, int 
         return 0.0f;
     const int r = limited((int)row, 0, rows - 2);
     const int c = limited((int)column, 0, columns - 2);
-    GLOBAL const float *at = relief.slopes + 2 * ((PLACE)r * columns + c) + part;
+    GLOBAL const float *at = relief.slopes + 2 * ((LONG_INDEX)r * columns + c) + part;
     const float corners[4] = {at[0], at[2], at[2 * columns], at[2 * columns + 2]};
     return mix_corners(corners, row - (float)r, column - (float)c);
 }

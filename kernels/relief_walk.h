@@ -86,7 +86,7 @@ FUNCTION float mix_corners(const float corners[4], float along, float across)
 FUNCTION void load_corners(struct relief_view relief, int row, int column, float corners[4])
 {
     const int columns = relief.grid->columns;
-    const PLACE at = (PLACE)row * columns + column;
+    const LONG_INDEX at = (LONG_INDEX)row * columns + column;
     corners[0] = relief.heights[at];
     corners[1] = relief.heights[at + 1];
     corners[2] = relief.heights[at + columns];
@@ -205,7 +205,7 @@ FUNCTION float walk_blocks(struct relief_view relief, const struct relief_ray *r
         float next = out_of_row < out_of_column ? out_of_row : out_of_column;
         next = next < end ? next : end;
         next = next > walk.at ? next : walk.at;
-        GLOBAL const float *block = relief.blocks + 2 * ((PLACE)row * block_columns + column);
+        GLOBAL const float *block = relief.blocks + 2 * ((LONG_INDEX)row * block_columns + column);
         const float here = ray->height + ray->rise * walk.at;
         const float there = ray->height + ray->rise * next;
         const float least = here < there ? here : there;

@@ -122,16 +122,16 @@ NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mas
                       is_sample & samples.is_followed);
     struct chain *chain = &path->chain;
     vfloat across_x, across, uniform, unused;
-    three_uniforms(trace->key, samples.number, 1, &across_x, &across, &chain->chance);
+    three_uniforms(trace->key, samples.number, 1, &across_x, &across, &chain->dither);
     two_uniforms(trace->key, samples.number, 2, &uniform, &unused);
-    const vfloat chance = chain->chance;
+    const vfloat dither = chain->dither;
     begin_chain(fan, trace->pieces, trace->objects, target.first_x + across_x * target.width,
                 target.first_elevation + across * target.elevations, SPLAT(1.0f),
                 is_alone ? &target.part : 0, is_sample & samples.is_followed, chain);
     chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == target.part);
     chain->key = trace->key;
     chain->number = samples.number;
-    chain->chance = chance;
+    chain->dither = dither;
     const vfloat receiver_x = samples.cell.receiver_x;
     const vfloat x = 2.0f * receiver_x - chain->first_x;
     const struct seabed_line line = line_across(fan, chain->hit.point, x, receiver_x);

@@ -29,36 +29,36 @@ FUNCTION int is_countable(float quanta, RECORD_WORD *faults)
 }
 
 /* Rounds quanta to a whole number, up or down by chance. The mean of all counts is then exact,
- * however little each path brings. chance: a uniform deviate in 0...1 of the path's own. */
-FUNCTION TALLY whole_quanta(float quanta, float chance)
+ * however little each path brings. dither: a uniform deviate in 0...1 of the path's own. */
+FUNCTION TALLY whole_quanta(float quanta, float dither)
 {
     const TALLY count = (TALLY)quanta; /* rounded towards zero */
     const float rest = quanta - (float)count;
-    return count + (chance < rest) - (chance < -rest);
+    return count + (dither < rest) - (dither < -rest);
 }
 
 /* Adds quanta to a tally. is_shared: other work-items may add to it at the same time. The items of
  * a group may always do so. */
-FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float chance,
+FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float dither,
                         RECORD_WORD *faults)
 {
     if (!is_countable(quanta, faults))
         return;
     if (is_shared | (GROUP_ITEMS > 1))
-        ATOMIC_ADD(tally, whole_quanta(quanta, chance));
+        ATOMIC_ADD(tally, whole_quanta(quanta, dither));
     else
-        *tally += whole_quanta(quanta, chance);
+        *tally += whole_quanta(quanta, dither);
 }
 
 /* Shares an echo between two neighbouring bins of a line. Its energy and mean range stay the same.
  * Bins outside the line get nothing. later: the share of the second bin. */
 FUNCTION void tally_shares(GLOBAL TALLY *line, int bins, int is_shared, int bin, float later,
-                           float quanta, float chance, RECORD_WORD *faults)
+                           float quanta, float dither, RECORD_WORD *faults)
 {
     if (bin >= 0 && bin < bins)
-        tally_add(&line[bin], is_shared, quanta * (1.0f - later), chance, faults);
+        tally_add(&line[bin], is_shared, quanta * (1.0f - later), dither, faults);
     if (bin >= -1 && bin + 1 < bins)
-        tally_add(&line[bin + 1], is_shared, quanta * later, 1.0f - chance, faults);
+        tally_add(&line[bin + 1], is_shared, quanta * later, 1.0f - dither, faults);
 }
 
 #endif

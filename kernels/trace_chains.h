@@ -150,8 +150,8 @@ FUNCTION void begin_fan_chain(const struct fan_record *fan,
                               const struct target_choice *choice, struct chain *chain)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    vfloat along, across, chance;
-    three_uniforms(key, number, 0, &along, &across, &chance);
+    vfloat along, across, dither;
+    three_uniforms(key, number, 0, &along, &across, &dither);
     begin_chain(fan, pieces, objects,
                 strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                 fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step,
@@ -160,7 +160,7 @@ FUNCTION void begin_fan_chain(const struct fan_record *fan,
     chain->choice = choice;
     chain->key = key;
     chain->number = number;
-    chain->chance = chance;
+    chain->dither = dither;
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
     chain->only_specular = chain->is_alive;

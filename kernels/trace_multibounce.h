@@ -289,7 +289,7 @@ FUNCTION void list_multibounce_echo(GLOBAL struct multibounce_echo_record *echoe
         record.real_part = kept->echo.real_part[lane];
         record.imaginary_part = kept->echo.imaginary_part[lane];
         record.fraction = kept->echo.fraction[lane];
-        record.chance = kept->echo.chance[lane];
+        record.dither = kept->echo.dither[lane];
         if (record.bin < 0)
             continue;
         const float most =

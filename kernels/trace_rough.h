@@ -63,7 +63,7 @@ struct rough_echo {
     float seabed_later[WIDTH], target_later[WIDTH]; /* share of the second */
     int object[WIDTH];
     float row[WIDTH], column[WIDTH]; /* place in the reflectivity map */
-    float chance[WIDTH];             /* uniform deviate for rounding */
+    float dither[WIDTH];             /* uniform deviate for rounding */
 };
 
 /* Returns a strip of a plane of an object's tile, from its first bin on; 0 if there is none. */
@@ -74,7 +74,7 @@ FUNCTION GLOBAL TALLY *tile_line(GLOBAL const struct object_record *object, GLOB
     if (row < 0 || row >= object->tile_strips)
         return 0;
     return tiles + object->tile_offset +
-           ((PLACE)plane * object->tile_strips + row) * object->tile_bins;
+           ((LONG_INDEX)plane * object->tile_strips + row) * object->tile_bins;
 }
 
 /* The tallies of one strip's rays. */
@@ -112,7 +112,7 @@ FUNCTION void tally_lost_seabed(const struct fan_record *fan,
     if (line && (column >= 0 || bin < 0) &&
         (column + 1 < object->tile_bins || bin + 1 >= fan->bins))
         tally_shares(line, object->tile_bins, tallies->is_shared, column, echo->seabed_later[lane],
-                     quanta, echo->chance[lane], &outcome->faults);
+                     quanta, echo->dither[lane], &outcome->faults);
     else
         outcome->faults |= FAULT_OUTSIDE_TILE;
 }
@@ -132,8 +132,8 @@ FUNCTION void tally_rough_seabed(const struct fan_record *fan,
         return;
     const float quanta =
         echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
-    tally_shares(tallies->seabed + (PLACE)strip * fan->bins, fan->bins, tallies->is_shared, bin,
-                 echo->seabed_later[lane], quanta, echo->chance[lane], &outcome->faults);
+    tally_shares(tallies->seabed + (LONG_INDEX)strip * fan->bins, fan->bins, tallies->is_shared,
+                 bin, echo->seabed_later[lane], quanta, echo->dither[lane], &outcome->faults);
     outcome->impulses += object < 0;
     if (object >= 0)
         tally_lost_seabed(fan, &objects[object], tallies, echo, lane, quanta, outcome);
@@ -159,7 +159,7 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
         return; /* beyond the patch's ranges, or its ends */
     tally_add(&footprint[nearest], tallies->is_shared, 1.0f, 0.5f, &outcome->faults);
     tally_shares(energy, object->tile_bins, tallies->is_shared, bin, later, echo->target[lane],
-                 echo->chance[lane], &outcome->faults);
+                 echo->dither[lane], &outcome->faults);
     outcome->impulses += echo->target[lane] > 0.0f;
 }
 
@@ -263,14 +263,14 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const vfloat lower = LOAD_VFLOAT(edges + first_ray);
     const vfloat step = LOAD_VFLOAT(edges + first_ray + 1) - lower;
     const int own_strip = fan->first_strip + strip;
-    vfloat along, across, chance;
-    three_uniforms(key, number, 0, &along, &across, &chance);
+    vfloat along, across, dither;
+    three_uniforms(key, number, 0, &along, &across, &dither);
     const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
     const vfloat x = strip_position(fan, strip) + (along - 0.5f) * spread;
     const struct fan_ray ray = fan_ray_at(fan, pieces, x, lower + across * step);
     /* Distances along the squinted ray times its cosine are distances along the fan's ray. */
     const struct aspect_ray squinted =
-        aspect_ray_of(fan, &ray, (RECORD_WORD)(fan->track_strip + own_strip), number, chance);
+        aspect_ray_of(fan, &ray, (RECORD_WORD)(fan->track_strip + own_strip), number, dither);
     const vfloat strip_of_cell = fan->strip_width * step * squinted.cosine;
     const vfloat to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
                                              SPLAT(-fan->reference_range), is_ray);
@@ -336,7 +336,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     STORE_VINT(object_numbers, echo->object);
     STORE_VFLOAT(safe_row, echo->row);
     STORE_VFLOAT(safe_column, echo->column);
-    STORE_VFLOAT(chance, echo->chance);
+    STORE_VFLOAT(dither, echo->dither);
 }
 
 /* Traces the share `segment` of a strip's fan. */

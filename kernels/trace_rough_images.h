@@ -9,7 +9,7 @@
 /* The energies of one group of rays, lane by lane, ready to be tallied. */
 struct image_echo {
     float energy[WIDTH]; /* quanta; 0: none */
-    float chance[WIDTH]; /* uniform deviate for rounding */
+    float dither[WIDTH]; /* uniform deviate for rounding */
     int bin[WIDTH];      /* the first of two */
     float later[WIDTH];  /* share of the second */
 };
@@ -23,8 +23,8 @@ FUNCTION void trace_rough_images_group(const struct fan_record *fan,
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    vfloat along, across, chance;
-    three_uniforms(key, number, 0, &along, &across, &chance);
+    vfloat along, across, dither;
+    three_uniforms(key, number, 0, &along, &across, &dither);
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                    fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
@@ -43,7 +43,7 @@ FUNCTION void trace_rough_images_group(const struct fan_record *fan,
     const struct bin_pair bins =
         bins_about(path.range * fan->bins_per_metre + fan->bin_at_reference);
     STORE_VFLOAT(kept, echo->energy);
-    STORE_VFLOAT(chance, echo->chance);
+    STORE_VFLOAT(dither, echo->dither);
     STORE_VINT(bins.bin, echo->bin);
     STORE_VFLOAT(bins.later, echo->later);
 }
@@ -67,7 +67,7 @@ FUNCTION struct outcome_record trace_rough_images_strip(
             if (!line || bin < -1 || bin >= object->tile_bins || echo.energy[lane] == 0.0f)
                 continue; /* beyond the patch's ranges */
             tally_shares(line, object->tile_bins, 0, bin, echo.later[lane], echo.energy[lane],
-                         echo.chance[lane], &outcome.faults);
+                         echo.dither[lane], &outcome.faults);
             outcome.impulses++;
         }
     }

@@ -16,7 +16,7 @@
 struct smooth_echo {
     float real_part[WIDTH], imaginary_part[WIDTH]; /* quanta */
     float fraction[WIDTH];                         /* share of a bin beyond `bin` */
-    float chance[WIDTH];                           /* uniform deviate for rounding */
+    float dither[WIDTH];                           /* uniform deviate for rounding */
     int bin[WIDTH];                                /* -1: no echo */
 };
 
@@ -27,7 +27,7 @@ struct wavefront_cell {
     mask is_ray;
     float width_along;                    /* m */
     vfloat offset_along, fraction_across; /* place of the hit: m off the middle; 0...1 */
-    vfloat chance;                        /* uniform deviate for rounding the echo */
+    vfloat dither;                        /* uniform deviate for rounding the echo */
 };
 
 /* Returns the shift of a stratum's cells across the ray, -0.5...0.5 of their width, even over any
@@ -50,7 +50,7 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     struct wavefront_cell cell;
     vfloat along;
-    three_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across, &cell.chance);
+    three_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across, &cell.dither);
     cell.is_ray = MASK_OF(number < fan->rays);
     cell.width_along = fan->strip_width / (float)fan->strata;
     cell.offset_along = (along - 0.5f) * cell.width_along;
@@ -68,7 +68,7 @@ struct cell_phase {
     vfloat range;
     vfloat amplitude;
     vfloat across; /* wavelengths by which half the path changes across the cell */
-    vfloat chance; /* uniform deviate for rounding */
+    vfloat dither; /* uniform deviate for rounding */
 };
 
 /* Integrates a cell's phase along the track. gradient: of the whole path, along-track and across
@@ -83,7 +83,7 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
     const float per_cycle =
         0.5f * fan->inverse_wavelength; /* k w g / 2 in cycles is w g / (2 lambda) */
     struct cell_phase phase;
-    phase.chance = cell->chance;
+    phase.dither = cell->dither;
     phase.range =
         range - 0.5f * (gradient_along * cell->offset_along + gradient_across * offset_across);
     const vfloat limit = SPLAT(4.0e6f);
@@ -149,7 +149,7 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
     STORE_VFLOAT(real_part, echo->real_part);
     STORE_VFLOAT(imaginary_part, echo->imaginary_part);
     STORE_VFLOAT(fraction, echo->fraction);
-    STORE_VFLOAT(phase.chance, echo->chance);
+    STORE_VFLOAT(phase.dither, echo->dither);
     STORE_VINT(bin_or_none, echo->bin);
 }
 
@@ -206,12 +206,12 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
         return;
     const float later = echo->fraction[lane];
     const float sooner = 1.0f - later;
-    const float chance = echo->chance[lane];
-    tally_add(&tally[2 * bin], 0, echo->real_part[lane] * sooner, chance, &outcome->faults);
-    tally_add(&tally[2 * bin + 1], 0, echo->imaginary_part[lane] * sooner, chance,
+    const float dither = echo->dither[lane];
+    tally_add(&tally[2 * bin], 0, echo->real_part[lane] * sooner, dither, &outcome->faults);
+    tally_add(&tally[2 * bin + 1], 0, echo->imaginary_part[lane] * sooner, dither,
               &outcome->faults);
-    tally_add(&tally[2 * bin + 2], 0, echo->real_part[lane] * later, chance, &outcome->faults);
-    tally_add(&tally[2 * bin + 3], 0, echo->imaginary_part[lane] * later, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 2], 0, echo->real_part[lane] * later, dither, &outcome->faults);
+    tally_add(&tally[2 * bin + 3], 0, echo->imaginary_part[lane] * later, dither, &outcome->faults);
     outcome->impulses++;
 }
 
@@ -253,7 +253,7 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
-    GLOBAL TALLY *line = tally + (PLACE)strip * fan->bins * 2;
+    GLOBAL TALLY *line = tally + (LONG_INDEX)strip * fan->bins * 2;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
         for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
             outcome.rays += rays_from(fan, ray, WIDTH);

@@ -50,7 +50,7 @@ FUNCTION struct outcome_record trace_smooth_images_strip(
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = key_of_strip(fan, strip);
-    GLOBAL TALLY *line = tally + (PLACE)strip * fan->bins * 2;
+    GLOBAL TALLY *line = tally + (LONG_INDEX)strip * fan->bins * 2;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
         for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
             outcome.rays += rays_from(fan, ray, WIDTH);

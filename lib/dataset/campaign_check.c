@@ -54,7 +54,7 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
     if (scene->has_files_geometry) /* take the geometry of all rows, as the file's picture does */
-        (void)geometry_notes_tell(&noted, &geometry);
+        (void)geometry_notes_to_params(&noted, &geometry);
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
     row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);

@@ -81,7 +81,7 @@ static void leave_out_shadows(struct fit *fit)
              fit->real_count);
     report_note(fit->report, "%s", note);
     growing_text_add(&fit->notes, "%s\n", note);
-    fit->draws.lacks_shadows = true;
+    fit->draws.contacts_lack_shadows = true;
     for (size_t i = 0; i < fit->real_count; i++) {
         fit->real[i].shadow_visibility_db = NAN;
         for (size_t k = 0; k < COUNT(of_shadows); k++)
@@ -241,7 +241,7 @@ static void note_drawn(const struct fit *fit, const struct campaign_image *image
     double *drawn = contact->drawn;
     drawn[FITTED_LENGTH] = log(truth->overall_length_m);
     drawn[FITTED_WIDTH] = log(truth->overall_width_m);
-    drawn[FITTED_HEIGHT] = fit->draws.lacks_shadows ? 0.0 : log(fmax(proud, 1e-3));
+    drawn[FITTED_HEIGHT] = fit->draws.contacts_lack_shadows ? 0.0 : log(fmax(proud, 1e-3));
     drawn[FITTED_LEVEL] = truth->over_seabed_db;
     drawn[FITTED_FLOOR] = image->result.statistics.noise_floor_db;
     contact->heading_rad = image->scene.objects[0].heading_rad;
@@ -512,7 +512,7 @@ static sonject_status write_all(const struct fit *fit, const char *fitted, const
     char *text;
     snprintf(comment, sizeof comment, "# Fitted by sonject %s to %s: draws of sizes%s.\n",
              sonject_version(), text_excerpt(name, sizeof name, path_name(contacts)),
-             fit->draws.lacks_shadows ? " and levels" : ", levels and the noise floor");
+             fit->draws.contacts_lack_shadows ? " and levels" : ", levels and the noise floor");
     CHECK(fit_draws_text(&fit->draws, fit->report, &fit->selection, comment, &text));
     sonject_status status = fit_page_write(fit, fitted);
     THEN(status, file_write_whole(fit->report, fitted, text, strlen(text)));

@@ -64,7 +64,7 @@ struct fitted_selection {
 /* The draws that a fit moves; the campaign must outlive them. Starts as zeros; for fit_draws_clear.
  */
 struct fit_draws {
-    bool lacks_shadows;              /* contacts lack shadows: what only shadows show stays */
+    bool contacts_lack_shadows;      /* contacts lack shadows: what only shadows show stays */
     const struct campaign *campaign; /* borrowed */
     char *text;                      /* text of the campaign's file; owned */
     struct fitted_number *numbers;   /* owned */

@@ -178,7 +178,7 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
         sonject_geometry_params told = scene.geometry;
         swath_file_layout(file, layout);
         geometry_notes_read(file, &noted);
-        *tells_geometry = geometry_notes_tell(&noted, &told);
+        *tells_geometry = geometry_notes_to_params(&noted, &told);
         *tells_altitude = isfinite(noted.altitude_m);
         *nadir_column = told.nadir_column;
     }

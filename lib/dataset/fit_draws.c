@@ -113,7 +113,7 @@ static sonject_status add_distribution(struct fit_draws *draws, struct report *r
 /* Returns the kinds that are observed. Without shadows, heights and the floor are not. */
 static uint32_t observed_kinds(const struct fit_draws *draws)
 {
-    return draws->lacks_shadows ? ~(BIT(FITTED_HEIGHT) | BIT(FITTED_FLOOR)) : UINT32_MAX;
+    return draws->contacts_lack_shadows ? ~(BIT(FITTED_HEIGHT) | BIT(FITTED_FLOOR)) : UINT32_MAX;
 }
 
 /* Finds the draws of a section of the file: an item's, or the campaign's. */
@@ -202,7 +202,8 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
     draws->campaign = campaign;
     draws->floor_db = NAN;
     CHECK(file_read_whole(report, campaign->path, TREE_BYTES_MAX, &draws->text, &bytes));
-    draws->lacks_floor = !draws->lacks_shadows && !draws_have_key(&campaign->draws, FLOOR_KEY);
+    draws->lacks_floor =
+        !draws->contacts_lack_shadows && !draws_have_key(&campaign->draws, FLOOR_KEY);
     if (drawn)
         CHECK(find_in_section(draws, report, drawn, "draw", &campaign->object_draws, NULL));
     const size_t of_all = draws->count;

@@ -161,7 +161,7 @@ void tell_calibration(struct report *report, const struct scene *scene)
 
 void tell_calibration_doubts(struct report *report, const struct scene *scene)
 {
-    const double share = scene->calibrated_altitudes;
+    const double share = scene->recorded_over_first_return;
     const char *side = scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard";
     if (*scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0)
         report_note(report,

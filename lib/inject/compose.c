@@ -53,8 +53,8 @@ static double visibility_of(const struct echoes *echoes, size_t i)
 
 /* Returns whether the pixel is resynthesised, whatever it is. The water column has no seabed to
  * trace, and keeps its own pixels but for the targets' echoes. */
-static bool is_traced_anew(const struct scene *scene, const struct patch_level *level,
-                           const struct echoes *echoes, size_t i)
+static bool is_resynthesised(const struct scene *scene, const struct patch_level *level,
+                             const struct echoes *echoes, size_t i)
 {
     return scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
            i % echoes->columns >= level->water_columns;
@@ -94,7 +94,7 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
         const double change = gain_at(level, echoes, i) * (double)echoes->target_energy[i] +
                               seabed_change(level, echoes, i) * (double)level->level[i];
-        if (!is_traced_anew(scene, level, echoes, i) &&
+        if (!is_resynthesised(scene, level, echoes, i) &&
             !(change > 0.0 && change >= threshold * level->level[i]))
             continue;
         const size_t row = i / echoes->columns;
@@ -128,7 +128,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
 {
     const size_t count = echoes->rows * echoes->columns;
     const double scale = sqrt(gain_at(level, echoes, i));
-    const bool resynthesises = is_traced_anew(scene, level, echoes, i);
+    const bool resynthesises = is_resynthesised(scene, level, echoes, i);
     const double visibility = visibility_of(echoes, i);
     double real_part = resynthesises ? scale * echoes->seabed_real[i] : 0.0;
     double imaginary_part = resynthesises ? scale * echoes->seabed_imaginary[i] : 0.0;

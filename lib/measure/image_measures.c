@@ -63,7 +63,7 @@ static void take_spacings(const struct swath_file *file, struct measured *measur
     struct noted_geometry noted;
     sonject_geometry_params told;
     geometry_notes_read(file, &noted);
-    if (noted.axis == RANGE_GROUND || !geometry_notes_tell(&noted, &told))
+    if (noted.axis == RANGE_GROUND || !geometry_notes_to_params(&noted, &told))
         return;
     measured->row_spacing_m = told.row_spacing_m;
     measured->column_spacing_m = told.column_spacing_m;

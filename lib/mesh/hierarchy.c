@@ -43,7 +43,7 @@ float split_box_area(const struct split_box *box)
     return x * y + y * z + z * x;
 }
 
-struct split_box split_box_of(const struct split_triangle *triangles, size_t first, size_t last)
+struct split_box split_box_of(const struct split_item *triangles, size_t first, size_t last)
 {
     struct split_box box = split_box_empty();
     for (size_t i = first; i < last; i++)
@@ -52,7 +52,7 @@ struct split_box split_box_of(const struct split_triangle *triangles, size_t fir
 }
 
 /* Returns twice the middle of a triangle's box. */
-static float middle(const struct split_triangle *triangle, int axis)
+static float middle(const struct split_item *triangle, int axis)
 {
     return triangle->box.edges[axis] - triangle->box.edges[4 + axis];
 }
@@ -65,13 +65,13 @@ struct bins {
     uint32_t triangles[3][BINS_MOST];
 };
 
-static int bin_of(const struct bins *bins, const struct split_triangle *triangle, int axis)
+static int bin_of(const struct bins *bins, const struct split_item *triangle, int axis)
 {
     const int bin = (int)((middle(triangle, axis) - bins->lower[axis]) * bins->scale[axis]);
     return bin < bins->count ? bin : bins->count - 1;
 }
 
-static void fill_bins(struct bins *bins, const struct split_triangle *triangles,
+static void fill_bins(struct bins *bins, const struct split_item *triangles,
                       const struct split_range *range)
 {
     const size_t count = range->last - range->first;
@@ -133,15 +133,15 @@ static void try_axis(const struct bins *bins, int axis, struct cut *best)
     }
 }
 
-static void swap(struct split_triangle *a, struct split_triangle *b)
+static void swap(struct split_item *a, struct split_item *b)
 {
-    const struct split_triangle kept = *a;
+    const struct split_item kept = *a;
     *a = *b;
     *b = kept;
 }
 
 /* Rearranges the range so that the lower half comes first. Returns where the upper half begins. */
-static size_t part_at(struct split_triangle *triangles, const struct split_range *range,
+static size_t part_at(struct split_item *triangles, const struct split_range *range,
                       const struct bins *bins, const struct cut *cut)
 {
     size_t low = range->first;
@@ -158,7 +158,7 @@ static size_t part_at(struct split_triangle *triangles, const struct split_range
 }
 
 /* Returns whether a lies before b. The lower number comes first of equal middles. */
-static bool lies_before(const struct split_triangle *a, const struct split_triangle *b, int axis)
+static bool lies_before(const struct split_item *a, const struct split_item *b, int axis)
 {
     const float at_a = middle(a, axis);
     const float at_b = middle(b, axis);
@@ -167,13 +167,13 @@ static bool lies_before(const struct split_triangle *a, const struct split_trian
 
 /* Rearranges the range so that the triangles before `begin` have the lower middles (Hoare's
  * selection). */
-static void part_by_order(struct split_triangle *triangles, const struct split_range *range,
-                          int axis, size_t begin)
+static void part_by_order(struct split_item *triangles, const struct split_range *range, int axis,
+                          size_t begin)
 {
     size_t first = range->first;
     size_t last = range->last - 1;
     while (first < last) {
-        const struct split_triangle pivot = triangles[first + (last - first) / 2];
+        const struct split_item pivot = triangles[first + (last - first) / 2];
         size_t low = first;
         size_t high = last;
         for (;;) {
@@ -192,7 +192,7 @@ static void part_by_order(struct split_triangle *triangles, const struct split_r
     }
 }
 
-static void set_halves(const struct split_triangle *triangles, const struct split_range *range,
+static void set_halves(const struct split_item *triangles, const struct split_range *range,
                        size_t begin, struct split_range *lower, struct split_range *upper)
 {
     const size_t last = range->last;
@@ -201,8 +201,8 @@ static void set_halves(const struct split_triangle *triangles, const struct spli
     *upper = (struct split_range){begin, last, split_box_of(triangles, begin, last)};
 }
 
-void split_cut_at(struct split_triangle *triangles, const struct split_range *range,
-                  size_t lower_count, struct split_range *lower, struct split_range *upper)
+void split_cut_at(struct split_item *triangles, const struct split_range *range, size_t lower_count,
+                  struct split_range *lower, struct split_range *upper)
 {
     const size_t begin = range->first + lower_count;
     int longest = 0;
@@ -213,7 +213,7 @@ void split_cut_at(struct split_triangle *triangles, const struct split_range *ra
     set_halves(triangles, range, begin, lower, upper);
 }
 
-void split_cut(struct split_triangle *triangles, const struct split_range *range, size_t half_limit,
+void split_cut(struct split_item *triangles, const struct split_range *range, size_t half_limit,
                struct split_range *lower, struct split_range *upper)
 {
     const size_t count = range->last - range->first;
@@ -239,7 +239,7 @@ struct pending {
 struct builder {
     const float *vertices;
     const uint32_t *corners;
-    struct split_triangle *triangles;
+    struct split_item *triangles;
     struct mesh_hierarchy *hierarchy;
     size_t branch_capacity, leaf_capacity, triangle_capacity;
     struct pending *pending;
@@ -354,7 +354,7 @@ static void fill_slot(const struct builder *builder, struct mesh_leaf *leaf, int
 
 /* Brings triangles that lie together into the same group of four; all groups but the last are
  * full. */
-static void group_leaf(struct split_triangle *triangles, const struct split_range *range)
+static void group_leaf(struct split_item *triangles, const struct split_range *range)
 {
     const size_t groups = (triangles_in(range) + MESH_GROUP - 1) / MESH_GROUP;
     struct split_range lower, upper;

@@ -45,7 +45,7 @@ struct split_box {
 };
 
 /* A triangle's box and number. */
-struct split_triangle {
+struct split_item {
     struct split_box box;
     uint32_t number;
 };
@@ -74,17 +74,17 @@ struct split_box split_box_empty(void);
 float split_box_area(const struct split_box *box);
 
 /* Returns the box of all triangles of the range. */
-struct split_box split_box_of(const struct split_triangle *triangles, size_t first, size_t last);
+struct split_box split_box_of(const struct split_item *triangles, size_t first, size_t last);
 
 /* Cuts the range (2 triangles or more) in two where the surface-area heuristic says, and rearranges
  * its triangles. Cuts at the median where the heuristic gives a half of more than half_limit, or
  * all middles are the same. */
-void split_cut(struct split_triangle *triangles, const struct split_range *range, size_t half_limit,
+void split_cut(struct split_item *triangles, const struct split_range *range, size_t half_limit,
                struct split_range *lower, struct split_range *upper);
 
 /* Cuts the range behind its first lower_count triangles (1...count - 1) by their middles along the
  * box's longest axis. */
-void split_cut_at(struct split_triangle *triangles, const struct split_range *range,
-                  size_t lower_count, struct split_range *lower, struct split_range *upper);
+void split_cut_at(struct split_item *triangles, const struct split_range *range, size_t lower_count,
+                  struct split_range *lower, struct split_range *upper);
 
 #endif

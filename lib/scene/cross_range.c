@@ -181,8 +181,8 @@ sonject_status cross_range_check(const struct point_response *response, struct r
 {
     if (response->array_length_m == 0.0)
         return SONJECT_OK;
-    const bool is_turned = sonar_array_is_turned(&scene->sonar);
-    CHECK(is_turned ? check_turned(report, scene, view) : SONJECT_OK);
+    const bool is_column_major = sonar_array_is_turned(&scene->sonar);
+    CHECK(is_column_major ? check_turned(report, scene, view) : SONJECT_OK);
     const double most = MIGRATION_SHARE * response->range_resolution_m;
     const double ends[2] = {view_processor_range(view, (double)view->columns - 1.0),
                             view_processor_range(view, 0.0)};
@@ -195,7 +195,7 @@ sonject_status cross_range_check(const struct point_response *response, struct r
                 "which is more than a quarter of the range cell: use a longer array, %sless "
                 "bandwidth or a nearer patch",
                 ends[i], migration, response->array_length_m,
-                is_turned ? "less heading and pitch, " : "");
+                is_column_major ? "less heading and pitch, " : "");
     }
     return SONJECT_OK;
 }

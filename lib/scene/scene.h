@@ -63,7 +63,8 @@ struct scene {
     char *calibration;        /* owned; the file that input.calibration names; NULL: none */
     char *calibrated;         /* owned; the keys taken from that file, one per line; NULL: none */
     char calibrated_side[12]; /* side of the calibration's image, as keys name it; "": not given */
-    double calibrated_altitudes; /* median of recorded altitudes over first returns; 0: not given */
+    double recorded_over_first_return; /* median of recorded altitudes over first returns; 0: not
+                                          given */
     struct first_return_list first_returns; /* the whole swath's, from the calibration */
     bool calibrates_itself;  /* auto: whoever runs the scene makes the calibration first */
     bool has_files_geometry; /* the input file gives some geometry, here for the patch's rows */

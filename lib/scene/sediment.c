@@ -58,7 +58,7 @@ static double complex reflection(const struct sediment *sediment, double grazing
 }
 
 /* Returns the scattering of small roughness by perturbation theory. wavenumber: 1/cm. */
-static double of_ripples(const struct sediment *sediment, double wavenumber, double grazing)
+static double of_small_roughness(const struct sediment *sediment, double wavenumber, double grazing)
 {
     const double density = sediment->density_ratio, across = cos(grazing), up = sin(grazing);
     const double complex ratio = (1.0 + sediment->loss * I) / sediment->speed_ratio;
@@ -160,7 +160,7 @@ double sediment_backscatter(const struct sediment *sediment, double wavelength_m
                   (8.0 * PI *
                    pow(pow(cos(grazing), 4.0 * ALPHA) + k.a * k.q * k.q * pow(sin(grazing), 4.0),
                        (1.0 + ALPHA) / (2.0 * ALPHA)));
-    const double flat = lit * over_slopes(sediment, wavenumber, grazing, slope, of_ripples);
+    const double flat = lit * over_slopes(sediment, wavenumber, grazing, slope, of_small_roughness);
     const double c = pow(1000.0, 1.0 / (1.0 + ALPHA)) * pow(k.a * k.q * k.q, 1.0 / ALPHA);
     const double steep_share = falling((cos(grazing) - pow(1.0 / c + 4.0, -0.25)) / 0.0125);
     const double moderate_share = falling((atan(slope) * DEGREES - 7.0) / 0.5);

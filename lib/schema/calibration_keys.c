@@ -137,7 +137,7 @@ static void take_measured(struct scene *scene, const struct tree_node *measured)
     if (side && side->value.kind == TREE_TEXT && side->value.text)
         snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
     if (!isnan(number))
-        scene->calibrated_altitudes = number;
+        scene->recorded_over_first_return = number;
 }
 
 /* Checks version and sections, and lays the sections' keys under the scene's. */

@@ -174,7 +174,7 @@ static void tell_range(const struct field *field, char text[200])
                  field->words[i + 1] ? ", " : " or ", field->words[i]);
 }
 
-bool field_is_sound(const struct field *field, const void *structure, char what[300])
+bool field_is_valid(const struct field *field, const void *structure, char what[300])
 {
     char range[200];
     if (field->kind == FIELD_LABEL) {

@@ -168,7 +168,7 @@ void section_defaults(const struct section *section, void *structure, struct sce
 sonject_status section_keys_json(struct report *report, const struct section *section, char **text);
 
 /* Returns whether a key's value is within its bounds. If not, what gets "must be 1...8, not 9". */
-bool field_is_sound(const struct field *field, const void *structure, char what[300]);
+bool field_is_valid(const struct field *field, const void *structure, char what[300]);
 
 /* Returns the section that describes the values below a field, and its structure in *below; NULL:
  * there is none. index: of the entry of a list. scene: as for section_defaults. */
@@ -340,10 +340,10 @@ sonject_status refuse_relation(struct reader *reader, const struct tree_node *no
 struct check check_at(struct reader *reader, const struct tree_node *node);
 
 /* Returns whether no key of a list, separated by blanks, is wrong in the section at the path. */
-bool are_sound(struct reader *reader, const char *keys);
+bool are_valid(struct reader *reader, const char *keys);
 
 /* Returns whether a key path of the whole file is not wrong. */
-bool is_sound_in_file(const struct reader *reader, const char *path);
+bool is_valid_in_file(const struct reader *reader, const char *path);
 
 /* Marks a key as wrong that another message is about. "": the value at the reader's path. */
 void mark_wrong(struct reader *reader, const struct tree_node *node, const char *key);

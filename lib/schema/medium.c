@@ -105,7 +105,7 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
     struct report check = {{0}, NULL, NULL};
     struct water_layer *layers;
     size_t count;
-    if (table->is_depth && !is_sound_in_file(reader, "surface.depth"))
+    if (table->is_depth && !is_valid_in_file(reader, "surface.depth"))
         return SONJECT_ERROR_INPUT;
     if (table->is_depth && !(depth > 0.0))
         return refuse_key(reader, node, key,
@@ -133,7 +133,7 @@ static sonject_status finish_profile(struct reader *reader, const struct tree_no
     struct profile_table table = {NULL, NULL, 0, false};
     const char *key = text->file ? "file" : text->depths.values ? "depths" : "heights";
     if (count_given(node, "file heights depths") != 1 ||
-        !are_sound(reader, "file heights depths sound_speeds"))
+        !are_valid(reader, "file heights depths sound_speeds"))
         return SONJECT_ERROR_INPUT;
     sonject_status status = text->file ? table_of_file(reader, node, text->file, &table)
                                        : table_of_lists(reader, node, key, text, &table);
@@ -236,7 +236,7 @@ static sonject_status finish_sea_water(struct reader *reader, const struct tree_
 {
     (void)structure;
     const double frequency = reader->scene->sonar.centre_frequency_hz;
-    if (is_sound_in_file(reader, "sonar.frequency") &&
+    if (is_valid_in_file(reader, "sonar.frequency") &&
         !(frequency >= ABSORPTION_FREQUENCY_MIN_HZ && frequency <= ABSORPTION_FREQUENCY_MAX_HZ))
         return refuse_value(reader, node,
                             "is known from 200 Hz to 1 MHz, not at the sonar's %g Hz; give it in "
@@ -269,7 +269,7 @@ static sonject_status read_absorption(struct reader *reader, const struct tree_n
         return read_quantity(reader, node, QUANTITY_ABSORPTION, &medium->absorption_db_per_m);
     section_defaults(&sea_water_section, &water, NULL);
     CHECK(read_section(reader, &sea_water_section, node, &water));
-    if (is_sound_in_file(reader, "sonar.frequency"))
+    if (is_valid_in_file(reader, "sonar.frequency"))
         medium->absorption_db_per_m =
             sonject_absorption(reader->scene->sonar.centre_frequency_hz, water.temperature_celsius,
                                water.salinity_permille, water.depth_m, water.ph);

@@ -118,7 +118,7 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
     if (status == SONJECT_ERROR_MEMORY)
         return report_out_of_memory(reader->report, mesh->path);
     /* A mistake in a file is reported once, however many objects show the mesh. */
-    if (is_sound_in_file(reader, mesh->path))
+    if (is_valid_in_file(reader, mesh->path))
         refuse_value(reader, node, "%s", report.message);
     mistakes_add(reader->tree->mistakes, reader->tree, &node->place, mesh->path, NULL);
     return status;

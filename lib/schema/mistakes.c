@@ -186,17 +186,17 @@ bool next_key(const char **keys, char key[64])
     return *key != 0;
 }
 
-bool is_sound_in_file(const struct reader *reader, const char *path)
+bool is_valid_in_file(const struct reader *reader, const char *path)
 {
     return !mistakes_concern(reader->tree->mistakes, reader->tree, path);
 }
 
-bool are_sound(struct reader *reader, const char *keys)
+bool are_valid(struct reader *reader, const char *keys)
 {
     char key[64];
     while (next_key(&keys, key)) {
         const size_t before = key_path_add(&reader->path, key);
-        const bool is_wrong = !is_sound_in_file(reader, reader->path.text);
+        const bool is_wrong = !is_valid_in_file(reader, reader->path.text);
         key_path_shorten(&reader->path, before);
         if (is_wrong)
             return false;
@@ -224,7 +224,7 @@ static sonject_status refuse_of(struct reader *reader, const struct tree_node *n
                                 const char *key, const char *others, const char *format,
                                 va_list arguments)
 {
-    if (!are_sound(reader, key) || !are_sound(reader, others))
+    if (!are_valid(reader, key) || !are_valid(reader, others))
         return SONJECT_ERROR_INPUT;
     const size_t before = key_path_add(&reader->path, key);
     const sonject_status status = refuse_at(reader, place_of_key(node, key), format, arguments);

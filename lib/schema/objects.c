@@ -149,7 +149,7 @@ static sonject_status finish_shape(struct reader *reader, const struct tree_node
     const bool is_one = count_given(node, "shape parts target") == 1;
     if (is_one && !is_given(node, "target"))
         check_shape_keys(reader, node, checked.shape);
-    if (!is_one || !are_sound(reader, "shape target"))
+    if (!is_one || !are_valid(reader, "shape target"))
         checked.shape = SHAPE_PARTS;
     if (!is_given(node, "material"))
         section_defaults(&material_section, &checked.material, NULL);

@@ -301,7 +301,7 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     if (field->has_kind)
         memcpy((char *)structure + field->kind_offset, &field->kind_value,
                sizeof field->kind_value);
-    if (!is_word_of(field, node) && !field_is_sound(field, of, what))
+    if (!is_word_of(field, node) && !field_is_valid(field, of, what))
         return refuse_value(reader, node, "%s", what);
     return SONJECT_OK;
 }
@@ -311,7 +311,7 @@ static sonject_status refuse_unknown(struct reader *reader, const struct section
                                      const struct tree_entry *entry)
 {
     struct word_list list = {{0}, 0};
-    if (!are_sound(reader, entry->key))
+    if (!are_valid(reader, entry->key))
         return SONJECT_ERROR_INPUT;
     const char *near = nearest_key(section, entry->key, strlen(entry->key), &list);
     const size_t before = key_path_add(&reader->path, entry->key);
@@ -382,7 +382,7 @@ static sonject_status check_choice_given(struct reader *reader, const struct sec
             *plus = ' '; /* blanks separate keys */
         begun += count_given(node, key) > 0;
         whole += count_given(node, key) == keys;
-        are_right = are_right && are_sound(reader, key);
+        are_right = are_right && are_valid(reader, key);
     }
     const bool may_lack = section->may_lack || (section == &input_section && reader->takes_pixels);
     if (begun == 1 ? whole == 1 : begun == 0 && may_lack)

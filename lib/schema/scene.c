@@ -463,7 +463,7 @@ static void take_recording(struct reader *reader)
     const struct recording_wish wish = {reader->takes_geometry, reader->altitude_by,
                                         reader->takes_first_range};
     if ((wish.geometry || wish.altitude_by != ALTITUDE_GIVEN || wish.first_range) &&
-        are_sound(reader, "input patch") &&
+        are_valid(reader, "input patch") &&
         recording_describe(&report, &wish, scene, &key) != SONJECT_OK)
         refuse_key(reader, &reader->tree->root, key, "%s", report.message);
 }

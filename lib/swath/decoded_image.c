@@ -77,7 +77,7 @@ static sonject_status open_at(struct report *report, struct decoded_image *image
     CHECK(check_reply(report, image, &reply.layout));
     image->layout = reply.layout;
     image->largest = reply.largest;
-    image->is_turned = reply.is_turned != 0;
+    image->is_column_major = reply.is_column_major != 0;
     image->jpeg_quality = reply.jpeg_quality;
     return SONJECT_OK;
 }
@@ -182,10 +182,10 @@ static sonject_status pass(const struct passage *passage)
 {
     const struct region *region = passage->region;
     const struct raster_layout *layout = &passage->image->layout;
-    const bool is_turned = passage->image->is_turned;
+    const bool is_column_major = passage->image->is_column_major;
     const size_t pixel = layout->channels * pixel_bytes(layout->type);
-    const uint64_t lines = is_turned ? region->columns : region->rows;
-    const size_t line = (size_t)(is_turned ? region->rows : region->columns) * pixel;
+    const uint64_t lines = is_column_major ? region->columns : region->rows;
+    const size_t line = (size_t)(is_column_major ? region->rows : region->columns) * pixel;
     const uint64_t some = line < DECODER_PIECE_BYTES ? DECODER_PIECE_BYTES / line : 1;
     const uint64_t at_once = some < lines ? some : lines;
     unsigned char *packed = allocate_array((size_t)at_once, line);
@@ -193,10 +193,10 @@ static sonject_status pass(const struct passage *passage)
     sonject_status status = SONJECT_OK;
     for (uint64_t first = 0; status == SONJECT_OK && first < lines; first += at_once) {
         const uint64_t count = lines - first < at_once ? lines - first : at_once;
-        const struct region piece = {region->first_row + (is_turned ? 0 : first),
-                                     region->first_column + (is_turned ? first : 0),
-                                     is_turned ? region->rows : count,
-                                     is_turned ? count : region->columns};
+        const struct region piece = {region->first_row + (is_column_major ? 0 : first),
+                                     region->first_column + (is_column_major ? first : 0),
+                                     is_column_major ? region->rows : count,
+                                     is_column_major ? count : region->columns};
         if (passage->progress &&
             passage->progress(passage->user, (double)first / (double)lines, "write") != 0)
             status = report_failure(passage->report, SONJECT_CANCELLED, "cancelled");

@@ -31,7 +31,8 @@
  * array of an HDF5 file. */
 enum decoder_function {
     DECODER_OPEN_IMAGE, /* in: name for messages, path, array ("": the only one), each with a 0; ->
-                           handle, layout, largest, is_turned; out: description with a 0, or none */
+                           handle, layout, largest, is_column_major; out: description with a 0, or
+                           none */
     DECODER_OPEN_COPY,  /* DECODER_OPEN_IMAGE for a copy that is written to */
     DECODER_CLOSE,      /* handle: afterwards all that was written to a copy is in the file */
     DECODER_READ,       /* handle, region -> out: samples, row after row */
@@ -49,8 +50,8 @@ struct decoder_reply {
     int32_t status; /* a sonject_status; on failure the bytes are the message */
     uint32_t handle;
     struct raster_layout layout;
-    uint32_t largest;   /* 0: the type's maximum */
-    uint32_t is_turned; /* the file stores column after column */
+    uint32_t largest;         /* 0: the type's maximum */
+    uint32_t is_column_major; /* the file stores column after column */
     int32_t jpeg_quality;
     uint64_t bytes; /* number of bytes that follow */
 };
@@ -112,10 +113,10 @@ struct decoded_image {
     struct decoder own; /* used if the report has no host */
     uint32_t handle, start;
     struct raster_layout layout;
-    uint32_t largest;  /* the largest number allowed; 0: the type's */
-    bool is_turned;    /* the file stores column after column */
-    int jpeg_quality;  /* see swath_file_jpeg_quality */
-    char *description; /* owned; texts in the image, each a line "name=value"; NULL: none */
+    uint32_t largest;     /* the largest number allowed; 0: the type's */
+    bool is_column_major; /* the file stores column after column */
+    int jpeg_quality;     /* see swath_file_jpeg_quality */
+    char *description;    /* owned; texts in the image, each a line "name=value"; NULL: none */
 };
 
 /* Opens an image. path: the file, and its name in messages. array: see swath_file_open_array.

@@ -113,7 +113,7 @@ static sonject_status open_image(struct question *question)
     file->layout = question->reply->layout = facts.layout;
     question->reply->handle = place + 1;
     question->reply->largest = facts.largest;
-    question->reply->is_turned = facts.is_turned;
+    question->reply->is_column_major = facts.is_column_major;
     question->reply->jpeg_quality = facts.jpeg_quality;
     if (status == SONJECT_OK && facts.description &&
         strlen(facts.description) < DESCRIPTION_MAX - 1)

@@ -128,7 +128,7 @@ static sonject_status check_told(const sonject_geometry_params *geometry, struct
     return check.status;
 }
 
-bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry)
+bool geometry_notes_to_params(const struct noted_geometry *noted, sonject_geometry_params *geometry)
 {
     struct report unused = {{0}, NULL, NULL};
     sonject_geometry_params told = *geometry;
@@ -368,7 +368,7 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
         return input_failure(report, scene->input_path,
                              "is in ground range, and runs work in slant range: convert it first "
                              "with sonject convert --range-axis slant");
-    if (wanted->wish.geometry && !geometry_notes_tell(&noted, &wanted->where))
+    if (wanted->wish.geometry && !geometry_notes_to_params(&noted, &wanted->where))
         return input_failure(
             report, scene->input_path,
             "does not say where its pixels lie, as XTF and JSF files do and what sonject convert "

@@ -40,7 +40,8 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
 
 /* Turns noted geometry into parameters of a slant range image. Returns false and changes nothing if
  * some are unknown or out of range. */
-bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
+bool geometry_notes_to_params(const struct noted_geometry *noted,
+                              sonject_geometry_params *geometry);
 
 /* The values that a scene leaves to its input. */
 struct recording_wish {

@@ -27,7 +27,7 @@ struct data_set {
     bool is_read;     /* the numbers are of a type that sonject reads */
     enum stored_type number;
     bool is_complex;
-    bool is_turned;        /* stored by MATLAB: sides are columns, rows */
+    bool is_column_major;  /* stored by MATLAB: sides are columns, rows */
     char part_names[2][8]; /* names of a complex compound's parts */
 };
 
@@ -100,7 +100,7 @@ static bool look_at(hid_t group, const char *name, struct data_set *set)
     if (is_plane) {
         set->is_read = H5Tget_class(type) == H5T_COMPOUND ? take_compound(type, set)
                                                           : number_of(type, &set->number);
-        set->is_turned = H5Aexists(dataset, "MATLAB_class") > 0;
+        set->is_column_major = H5Aexists(dataset, "MATLAB_class") > 0;
     }
     release(type);
     release(space);
@@ -128,8 +128,8 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *link, 
         return 0;
     sprintf(walk->path + end, "%s%s", end > 0 ? "/" : "", name);
     if (look_at(group, name, &set)) {
-        const uint64_t rows = set.sides[set.is_turned];
-        const uint64_t columns = set.sides[!set.is_turned];
+        const uint64_t rows = set.sides[set.is_column_major];
+        const uint64_t columns = set.sides[!set.is_column_major];
         strcpy(set.name, walk->path);
         if (array_list_add(&walk->list, set.name, rows, columns,
                            set.is_read && rows > 1 && columns > 1))
@@ -259,14 +259,15 @@ static sonject_status open_image(struct report *report, const char *name, const 
     const sonject_status status = check_storage(report, array, creation);
     release(creation);
     CHECK(status);
-    array->layout = (struct raster_layout){set->sides[set->is_turned], set->sides[!set->is_turned],
-                                           set->is_complex ? 2 : 1,
-                                           set->number == STORED_UINT8     ? PIXEL_UINT8
-                                           : set->number >= STORED_FLOAT32 ? PIXEL_FLOAT32
-                                                                           : PIXEL_UINT16};
+    array->layout =
+        (struct raster_layout){set->sides[set->is_column_major], set->sides[!set->is_column_major],
+                               set->is_complex ? 2 : 1,
+                               set->number == STORED_UINT8     ? PIXEL_UINT8
+                               : set->number >= STORED_FLOAT32 ? PIXEL_FLOAT32
+                                                               : PIXEL_UINT16};
     facts->layout = array->layout;
     facts->largest = set->number == STORED_INT16 ? INT16_MAX : 0;
-    facts->is_turned = set->is_turned;
+    facts->is_column_major = set->is_column_major;
     H5Aiterate2(array->dataset, H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &text);
     facts->description = growing_text_end(&text);
     CHECK_MEMORY(report, facts->description, array->path);
@@ -312,11 +313,11 @@ static hid_t memory_type(const struct data_set *set)
 static bool move_run(const struct hdf5_array *array, const struct region *part, hid_t type,
                      void *run, bool writes)
 {
-    const bool is_turned = array->set.is_turned;
-    const hsize_t start[2] = {is_turned ? part->first_column : part->first_row,
-                              is_turned ? part->first_row : part->first_column};
-    const hsize_t counts[2] = {is_turned ? part->columns : part->rows,
-                               is_turned ? part->rows : part->columns};
+    const bool is_column_major = array->set.is_column_major;
+    const hsize_t start[2] = {is_column_major ? part->first_column : part->first_row,
+                              is_column_major ? part->first_row : part->first_column};
+    const hsize_t counts[2] = {is_column_major ? part->columns : part->rows,
+                               is_column_major ? part->rows : part->columns};
     const hid_t space = H5Dget_space(array->dataset);
     const hid_t memory = H5Screate_simple(2, counts, NULL);
     bool is_done = space >= 0 && memory >= 0 &&
@@ -333,10 +334,10 @@ static bool move_run(const struct hdf5_array *array, const struct region *part, 
 static sonject_status exchange(struct report *report, const struct hdf5_array *array,
                                const struct region *region, void *pixels, bool writes)
 {
-    const bool is_turned = array->set.is_turned;
+    const bool is_column_major = array->set.is_column_major;
     const enum stored_type stored = array->set.number;
     const ptrdiff_t pixel = (ptrdiff_t)array->layout.channels;
-    const ptrdiff_t line = pixel * (ptrdiff_t)(is_turned ? region->rows : region->columns);
+    const ptrdiff_t line = pixel * (ptrdiff_t)(is_column_major ? region->rows : region->columns);
     const hid_t type = memory_type(&array->set);
     unsigned char *run =
         type < 0 ? NULL
@@ -344,8 +345,8 @@ static sonject_status exchange(struct report *report, const struct hdf5_array *a
     const struct stored_samples samples = {
         .bytes = {run, run ? run + stored_bytes(stored) : NULL},
         .types = {stored, stored},
-        .row_step = is_turned ? pixel : line,
-        .column_step = is_turned ? line : pixel,
+        .row_step = is_column_major ? pixel : line,
+        .column_step = is_column_major ? line : pixel,
         .is_big_endian = machine_is_big_endian(),
     };
     const bool needs_old = !writes || stored == STORED_FLOAT64;

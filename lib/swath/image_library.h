@@ -18,9 +18,9 @@ struct library_fault {
 
 struct image_facts {
     struct raster_layout layout;
-    uint32_t largest; /* the largest number allowed; 0: the type's */
-    bool is_turned;   /* the file stores column after column */
-    int jpeg_quality; /* see swath_file_jpeg_quality */
+    uint32_t largest;     /* the largest number allowed; 0: the type's */
+    bool is_column_major; /* the file stores column after column */
+    int jpeg_quality;     /* see swath_file_jpeg_quality */
     /* texts in the image, each a line "name=value"; for free(); NULL: none */
     char *description;
 };

@@ -154,7 +154,7 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
     const bool is_ground = noted.axis == RANGE_GROUND && !options->has_geometry;
     if (is_ground) /* the numbers are checked as slant ranges are */
         noted.axis = RANGE_SLANT;
-    const bool has_metres = options->has_geometry || geometry_notes_tell(&noted, &geometry);
+    const bool has_metres = options->has_geometry || geometry_notes_to_params(&noted, &geometry);
     *altitude = params->altitude_m > 0.0 ? params->altitude_m
                 : noted.altitude_m > 0.0 ? noted.altitude_m
                                          : 0.0;

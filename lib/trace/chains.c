@@ -156,7 +156,7 @@ static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *trac
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[part];
     const double grazing = placement_grazing(placement, &tracer->view);
-    const struct elevations edges = elevations_of_object(tracer, part, &tracer->view.water);
+    const struct elevations edges = elevations_of_part(tracer, part, &tracer->view.water);
     const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,

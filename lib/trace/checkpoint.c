@@ -124,7 +124,7 @@ sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *tra
     if (!checkpoint)
         return SONJECT_OK;
     if (!checkpoint->files)
-        return sums_writer_sums(&checkpoint->writer, traced, count);
+        return sums_writer_add_all(&checkpoint->writer, traced, count);
     free(checkpoint->sums);
     checkpoint->sums = allocate_array(count, sizeof *checkpoint->sums);
     CHECK_MEMORY(checkpoint->report, checkpoint->sums, "tallies");

@@ -303,7 +303,7 @@ double fan_highest_elevation(const struct tracer *tracer, double central_grazing
         if (tracer_follows(tracer, tracer->placements[i].object))
             highest =
                 fmax(highest, central_grazing - placement_grazing(&tracer->placements[i], view) +
-                                  elevations_of_object(tracer, i, &view->water).highest);
+                                  elevations_of_part(tracer, i, &view->water).highest);
     return highest;
 }
 
@@ -387,8 +387,8 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                              fan_step_to_objects(tracer, (double)fan->strip_width)));
 }
 
-struct elevations elevations_of_object(const struct tracer *tracer, uint32_t part,
-                                       const struct ray_path *path)
+struct elevations elevations_of_part(const struct tracer *tracer, uint32_t part,
+                                     const struct ray_path *path)
 {
     const struct placement *placement = &tracer->placements[part];
     const double *centre = placement->centre;
@@ -413,19 +413,19 @@ void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32
     const double *centre = tracer->placements[part].centre;
     const double grazing = ray_path_grazing(path, centre[1], centre[2]);
     const double radius = ray_path_arrival(path, grazing, centre[2]).wavefront_m;
-    const struct elevations edges = elevations_of_object(tracer, part, path);
+    const struct elevations edges = elevations_of_part(tracer, part, path);
     const double rays = ceil((edges.highest - edges.lowest) * radius / cell_m) + 1.0;
     fan->rays = (uint32_t)rays;
     fan->first_elevation = (float)edges.lowest;
     fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
 }
 
-sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
-                               const struct ray_path *path, struct ray_table_record *record)
+sonject_status part_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
+                             const struct ray_path *path, struct ray_table_record *record)
 {
     const double *centre = tracer->placements[part].centre;
     return ray_table_add(rays, tracer->report, path, centre[1], centre[2],
-                         elevations_of_object(tracer, part, path), record);
+                         elevations_of_part(tracer, part, path), record);
 }
 
 double aspects_sine(const struct tracer *tracer)

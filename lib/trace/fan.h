@@ -88,16 +88,16 @@ sonject_status fan_set_rays(struct fan_record *fan, struct report *report, doubl
 
 /* Returns the elevations that a part fills as seen on a path, from the direction of its centre,
  * with a small margin. */
-struct elevations elevations_of_object(const struct tracer *tracer, uint32_t part,
-                                       const struct ray_path *path);
+struct elevations elevations_of_part(const struct tracer *tracer, uint32_t part,
+                                     const struct ray_path *path);
 
 /* Lays rays over a part as seen on a path, at most cell_m apart on the wavefront. */
 void fan_aim_at_part(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                      const struct ray_path *path, double cell_m);
 
 /* Appends the rays of a path to a part in the part's frame. Errors: as patch_rays_init. */
-sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
-                               const struct ray_path *path, struct ray_table_record *record);
+sonject_status part_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t part,
+                             const struct ray_path *path, struct ray_table_record *record);
 
 /* Returns the sine of the largest angle off broadside; 0 for broadside alone. The response's own
  * sine, wavelength / (4 resolution), counts up to that of 45 degrees. */

@@ -211,7 +211,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
         /* the frame is centred on the object: phases then keep their digits */
         fan_record_init(fan, tracer, tracer->placements[part].centre, &trace->grid);
         fan->stream = STREAM_SMOOTH_RAYS + part;
-        status = object_rays_add(&trace->launch.rays, tracer, part, &sonar.path, &fan->table);
+        status = part_rays_add(&trace->launch.rays, tracer, part, &sonar.path, &fan->table);
     }
     const struct ray_path *path = pair ? &pair->outgoing->path : &sonar.path;
     glint_fan_init(fan, tracer, part, path, cell_of_part(tracer, part),

@@ -306,9 +306,9 @@ sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *
                                         grid->bins_per_pixel / view->column_spacing_m -
                                     grid->bins.first);
     sonject_status status =
-        object_rays_add(rays, tracer, part, &pair->outgoing->path, &record->outgoing.table);
+        part_rays_add(rays, tracer, part, &pair->outgoing->path, &record->outgoing.table);
     THEN(status,
-         object_rays_add(rays, tracer, part, &pair->returning->path, &record->returning.table));
+         part_rays_add(rays, tracer, part, &pair->returning->path, &record->returning.table));
     fan->table = record->outgoing.table;
     return status;
 }

@@ -48,10 +48,10 @@ bool multibounce_sums_add(struct multibounce_sums *sums,
         int64_t *second = cell_at(sums, (size_t)strip, (size_t)echo->bin + 1);
         if (!first || !second)
             return false;
-        first[0] += whole_quanta(echo->real_part * sooner, echo->chance);
-        first[1] += whole_quanta(echo->imaginary_part * sooner, echo->chance);
-        second[0] += whole_quanta(echo->real_part * later, echo->chance);
-        second[1] += whole_quanta(echo->imaginary_part * later, echo->chance);
+        first[0] += whole_quanta(echo->real_part * sooner, echo->dither);
+        first[1] += whole_quanta(echo->imaginary_part * sooner, echo->dither);
+        second[0] += whole_quanta(echo->real_part * later, echo->dither);
+        second[1] += whole_quanta(echo->imaginary_part * later, echo->dither);
     }
     return true;
 }

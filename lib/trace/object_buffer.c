@@ -112,7 +112,7 @@ static struct corridor corridor_to(const struct tracer *tracer, uint32_t target,
     corridor.last_x = view_x_of_row(view, end / per_row - 0.5) + MARGIN_LEAST;
     corridor.is_straight = is_straight && view->water.is_straight;
     if (corridor.is_straight) {
-        const struct elevations edges = elevations_of_object(tracer, target, &view->water);
+        const struct elevations edges = elevations_of_part(tracer, target, &view->water);
         const double angle = angle_from_track(tracer, placement);
         corridor.least_angle = angle - edges.highest - 1e-4;
         corridor.most_angle = angle - edges.lowest + 1e-4;

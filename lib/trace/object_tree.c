@@ -32,7 +32,7 @@ struct pending {
 };
 
 struct builder {
-    struct split_triangle *objects; /* boxes and numbers of the objects */
+    struct split_item *objects; /* boxes and numbers of the objects */
     struct object_branch *branches;
     struct pending *pending;
     uint32_t branch_count, pending_count;
@@ -175,7 +175,7 @@ static void set_middle(const struct object_record *records, const struct reach *
 }
 
 /* Sets the boxes about the middle. Returns the mean of their longest sides, m. */
-static double set_boxes(struct split_triangle *objects, const struct object_record *records,
+static double set_boxes(struct split_item *objects, const struct object_record *records,
                         const struct reach *reaches, uint32_t count, const double middle[3])
 {
     double sum = 0.0;
@@ -304,7 +304,7 @@ static struct split_box box_of_sphere(const struct sphere_record *sphere)
 }
 
 /* Brings spheres that lie together into the same group; all groups but the last are full. */
-static void sort_into_groups(struct split_triangle *spheres, const struct split_range *range)
+static void sort_into_groups(struct split_item *spheres, const struct split_range *range)
 {
     const size_t groups = (range->last - range->first + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
     struct split_range lower, upper;
@@ -328,7 +328,7 @@ static void set_sphere(struct sphere_group *group, size_t slot, const struct sph
 
 /* Returns a sphere around the spheres [first, last). */
 static struct sphere_record sphere_around(const struct sphere_record *spheres,
-                                          const struct split_triangle *sorted, size_t first,
+                                          const struct split_item *sorted, size_t first,
                                           size_t last)
 {
     const struct split_box box = split_box_of(sorted, first, last);
@@ -347,7 +347,7 @@ static struct sphere_record sphere_around(const struct sphere_record *spheres,
     return around;
 }
 
-static void init_groups(struct target_spheres *spheres, struct split_triangle *sorted)
+static void init_groups(struct target_spheres *spheres, struct split_item *sorted)
 {
     struct sphere_group *groups =
         (struct sphere_group *)(void *)(spheres->records + spheres->count);
@@ -380,7 +380,7 @@ sonject_status target_spheres_init(struct target_spheres *spheres, const struct 
                         tracer->part_count * sizeof(struct target_record);
     memset(spheres, 0, sizeof *spheres);
     spheres->records = allocate_array(room, 1);
-    struct split_triangle *sorted = allocate_array(most, sizeof *sorted);
+    struct split_item *sorted = allocate_array(most, sizeof *sorted);
     if (!spheres->records || !sorted) {
         free(sorted);
         free(spheres->records);

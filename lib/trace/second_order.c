@@ -49,7 +49,7 @@ static struct target_window window_of_part(const struct tracer *tracer, uint32_t
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[part];
     const struct ray_path *water = &tracer->view.water;
-    const struct elevations edges = elevations_of_object(tracer, part, water);
+    const struct elevations edges = elevations_of_part(tracer, part, water);
     const double grazing = placement_grazing(placement, &tracer->view);
     struct target_window window;
     window.half_width_m = MARGIN * placement_half_extent(placement, along);

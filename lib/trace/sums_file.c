@@ -139,7 +139,7 @@ sonject_status sums_writer_end_sums(struct sums_writer *writer)
     return end_block(writer, BLOCK_SUMS);
 }
 
-sonject_status sums_writer_sums(struct sums_writer *writer, const int64_t *values, size_t count)
+sonject_status sums_writer_add_all(struct sums_writer *writer, const int64_t *values, size_t count)
 {
     sonject_status status = sums_writer_begin_sums(writer, count);
     for (size_t i = 0; status == SONJECT_OK && i < count;) {

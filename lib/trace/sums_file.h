@@ -76,7 +76,7 @@ sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const
 sonject_status sums_writer_end_sums(struct sums_writer *writer);
 
 /* Writes a block of all sums at once. */
-sonject_status sums_writer_sums(struct sums_writer *writer, const int64_t *values, size_t count);
+sonject_status sums_writer_add_all(struct sums_writer *writer, const int64_t *values, size_t count);
 
 /* Gives the file its head and its name. The writer counts head->records itself. source may be NULL.
  * Errors: STORAGE, MEMORY. */

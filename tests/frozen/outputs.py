@@ -110,7 +110,7 @@ def digest(content):
 
 def checksums(path, name, place):
     """The lines of one file: (name, checksum)."""
-    content = path.read_bytes().replace(str(place).encode(), b"PLACE")
+    content = path.read_bytes().replace(str(place).encode(), b"LONG_INDEX")
     if path.suffix == ".json":
         written, values = json_forms(content)
         return [(name, digest(written)), (name + ":content", digest(values))]

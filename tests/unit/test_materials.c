@@ -31,7 +31,7 @@ static void expect_sound(const char *name, const struct section *section,
     for (size_t i = 0; i < section->count; i++) {
         char what[300];
         const struct field *field = &section->fields[i];
-        if (!field_is_sound(field, material, what))
+        if (!field_is_valid(field, material, what))
             fail_msg("%s: %s %s", name, field->key, what);
         if (field->section) /* its fields are in the same structure */
             expect_sound(name, field->section, material);

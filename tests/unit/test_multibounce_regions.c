@@ -24,7 +24,7 @@ static struct multibounce_echo_record echo_of(uint32_t number)
         .bin = place[1] + (int32_t)(random >> 8 & 0xff),
         .real_part = 1.0f,
         .imaginary_part = -2.0f,
-        .chance = 0.5f,
+        .dither = 0.5f,
     };
     if (number >= ABOUT) {
         const int32_t i = (int32_t)number - ABOUT;

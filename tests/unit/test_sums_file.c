@@ -37,8 +37,8 @@ static void write_sums(const char *place, struct sums_head head, const int64_t *
 {
     struct sums_writer writer;
     EXPECT_OK(&report, sums_writer_begin(&writer, &report, NULL, place));
-    EXPECT_OK(&report, sums_writer_sums(&writer, values, count));
-    EXPECT_OK(&report, sums_writer_sums(&writer, sums, SUMS));
+    EXPECT_OK(&report, sums_writer_add_all(&writer, values, count));
+    EXPECT_OK(&report, sums_writer_add_all(&writer, sums, SUMS));
     EXPECT_OK(&report, sums_writer_publish(&writer, &head, &source));
     sums_writer_clear(&writer);
 }
