@@ -60,7 +60,7 @@ static double parameter_of(const struct sea *sea, struct reference_sound sound)
 }
 
 /* Returns the share of the energy that all planes under the sonar pass on, one way: 1 - R^2 = 4 Z1
- * Z2 / (Z1 + Z2)^2 with Z = density c / sin. Planes without a step of density, of a profile, pass
+ * Z2 / (Z1 + Z2)^2 with Z = density c / sin. Planes of a profile have no step of density and pass
  * all. */
 static double passed_on(const struct sea *sea, double p)
 {
