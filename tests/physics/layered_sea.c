@@ -189,8 +189,7 @@ void expect_families(const struct sea *sea, const struct line *line, uint32_t bo
     }
 }
 
-/* Returns the energy of a Lambert sphere seen at an angle from the source, over that at no
- * angle. */
+/* Returns a Lambert sphere's energy, seen at an angle from the source, over that at no angle. */
 static double lambert_sphere(double angle)
 {
     return (sin(angle) + (PI - angle) * cos(angle)) / PI;

@@ -37,8 +37,7 @@ struct reference_sound sound_on_seabed(const struct sea *sea, double processor_r
 double gain_of(const struct sea *sea, struct reference_sound out, struct reference_sound home);
 
 /* A family of paths: out from one image of the sonar and home to another. The echo of the first
- * object, a sphere, is a/2 at the point of the shortest time, with both ray tubes and all
- * mirrors. */
+ * object, a sphere, is a/2 at the point of the shortest time, with both tubes and all mirrors. */
 struct family {
     double complex amplitude;
     double range; /* processor range, m */

@@ -35,8 +35,8 @@ struct multibounce_way straight_way(const struct sea *sea);
 
 /* Returns the echo first -> last at a processor range through the pulse, all strips together. The
  * sources are broadside of the mean of both points. The echo is normalised by the square of half
- * the path. spacing: of the last face's points, m. For each of them one point of the first face at
- * most is stationary. */
+ * the path. spacing: of the last face's points, m. For each, one point of the first face at most is
+ * stationary. */
 double complex multibounce_echo(const struct sea *sea, const struct multibounce_way *way,
                                 const struct face *first, const struct face *last, double spacing,
                                 double range);

@@ -44,8 +44,7 @@ static void keep_nearest(struct meeting *nearest, double distance, struct refere
     }
 }
 
-/* Meets a sphere about (shift, 0, 0). For a capsule's end (`end` -1 or 1) only its outer half
- * counts. */
+/* Meets a sphere about (shift, 0, 0). Of a capsule's end (`end` -1 or 1) the outer half counts. */
 static void meet_sphere(struct meeting *nearest, struct reference_vector o,
                         struct reference_vector d, double radius, double shift, int end)
 {
@@ -334,8 +333,8 @@ static void scatter(struct run *run, struct ray *ray, struct reference_vector no
 }
 
 /* Returns whether the ray belongs to fan `aim`; others do not count. The fans are of rays that meet
- * the target at once, the seabed at once, the target after the mirror (MET_MIRROR), or the sea
- * surface otherwise. */
+ * the target at once, the seabed at once, the target after the mirror (MET_MIRROR), or else the
+ * surface. */
 static bool is_aimed(const struct ray *ray, int aim)
 {
     if (ray->hits == 1)

@@ -40,7 +40,7 @@ struct reference_body {
     double length, radius, lambert;
 };
 
-/* The surfaces that a path meets. A path's number has them as digits to the base 5, the first hit
+/* The surfaces that a path meets: digits of the path's number to the base 5, the first hit
  * first. */
 enum reference_surface {
     MET_NOTHING,

@@ -14,8 +14,7 @@
 
 /* ---- claims ---- */
 
-/* The program tests each CLAIM(name) { ... } on the default device. Kernel tests compare the bits
- * of all devices. */
+/* The program tests CLAIM(name) { ... } on the default device. Kernel tests compare all devices. */
 #define CLAIM(name)                                                                                \
     static void name(void);                                                                        \
     __attribute__((constructor)) static void add_##name(void)                                      \
@@ -52,7 +51,7 @@ struct sea {
 };
 
 /* Lays a patch with default parameters (100 kHz, 30 kHz, 10 m altitude, 2.5 cm), but with broadside
- * rays alone. The middle column is at a processor range. There is one sea at a time: an earlier one
+ * rays alone. The middle column is at a processor range. There is one sea at a time: the one before
  * is closed. */
 struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 

@@ -108,8 +108,7 @@ static struct results inject_to(struct sea *sea, const float *pixels, double acc
 }
 
 /* The error that is told is mostly too large, since errors fall faster than with the root of the
- * rays. It may be too small with two interactions, since pilots may miss their rare bright
- * paths. */
+ * rays. It may be too small with two interactions, whose rare bright paths pilots may miss. */
 static void expect_accuracy(const struct sea *sea, const struct results *results, double accuracy,
                             const struct injected *reference)
 {

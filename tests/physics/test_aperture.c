@@ -43,9 +43,8 @@ static double window_energy(uint32_t window, double offset)
 }
 
 /* Returns the visibility at x along the track behind a screen of `width` around 0, at a distance d
- * behind it in the plane across the track. It is the share of aspects whose path, at x - d
- * tan(aspect), passes beside the screen. Lambert's law gives each aspect the square of its
- * cosine. */
+ * behind it in the plane across the track. It is the share of aspects whose path passes beside the
+ * screen, at x - d tan(aspect). By Lambert's law each aspect has the square of its cosine. */
 static double expected_visibility(double x, double width, double d, uint32_t window)
 {
     const int steps = 4000;
@@ -154,8 +153,7 @@ CLAIM(shadows_are_those_of_the_aspects)
     }
 }
 
-/* The noise of one pixel's visibility with the default number of rays, in the middle of a penumbra,
- * where it is largest. */
+/* The noise of a pixel's visibility with the default rays, largest in the middle of a penumbra. */
 CLAIM(noise_amid_a_penumbra)
 {
     struct sea *sea = open_aperture(RANGE, SONJECT_WINDOW_RECTANGULAR, 1.0);
@@ -180,8 +178,7 @@ CLAIM(noise_amid_a_penumbra)
 }
 
 /* Lambert's law at an aspect has the square of the aspect's cosine, 1 - sine^2/3 on the mean of
- * all. A squared Hamming window has a mean of sine^2 of its own. 10^6 rays have stratified
- * weights. */
+ * all. A squared Hamming window has its own mean of sine^2. 10^6 rays have stratified weights. */
 CLAIM(the_seabeds_level_over_aspects)
 {
     double sums[2], weights = 0.0, squares = 0.0;

@@ -72,9 +72,8 @@ static struct estimate sum_of_two(struct estimate a, struct estimate b)
 }
 
 /* Compares energies within four standard errors, in each range where the energy is known to 20 %
- * and in the sum of these ranges. Ranges with less than a tenth of the most are left out. There
- * brute force may find nothing at all, and far beyond the target seabed outside the patch
- * counts. */
+ * and in the sum of these ranges. Ranges with less than a tenth of the most are left out: brute
+ * force may find nothing there, and far beyond the target seabed outside the patch counts. */
 static void expect_same(const char *what, const struct energies *a, const struct energies *b,
                         double systematic)
 {
@@ -151,8 +150,7 @@ CLAIM(brute_force_leaves_glints_out)
 /* In focused columns paths between seabed and target are searched from the seabed alone and stand
  * for both ways. With a source of a millimetre beside the receiver both are found on their own,
  * each seen from broadside of its first hit. At this range that changes the angles by less than a
- * degree and the energies by less than 3 %. Rays are few, so that errors are as large as this
- * systematic one. */
+ * degree and the energies by less than 3 %. Rays are few: errors are as large as this. */
 CLAIM(one_way_stands_for_both)
 {
     for (int has_relief = 0; has_relief < 2; has_relief++) {
@@ -174,8 +172,8 @@ CLAIM(one_way_stands_for_both)
  * Sound goes to and fro between them, so each path of the reference is scaled by the surfaces that
  * it meets. A drum on its side lies within one sphere, which also holds the seabed under its
  * overhang. Weak surfaces have fewer seeds, enough to show that shares scale. Paths begin on seabed
- * from well before the patch to its end. A bin of 3 mm, shared at either end of a range, is the
- * systematic error. */
+ * from well before the patch to its end. A bin of 3 mm, shared at either end of a range, is
+ * systematic. */
 CLAIM(orders_have_the_references_energy)
 {
     static struct reference_energy energy;
@@ -241,8 +239,7 @@ CLAIM(a_mirrored_object_is_left_to_image_pairs)
 
 /* The narrowest cones are 2500 times as bright as Lambert's law, and tallies must hold them. A
  * sphere alone echoes a quarter of its radius' square, and other paths add to that. A tilted plate
- * mirrors past the sonar. Eight interactions take long, so half the seeds must do. They know the
- * sum to 15 %. */
+ * mirrors past the sonar. Eight interactions take long. Half the seeds know the sum to 15 %. */
 CLAIM(the_narrowest_cone_is_in_scale)
 {
     static const double slopes[] = {0.01, 0.03};
@@ -281,8 +278,8 @@ static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
 
 /* Adds one bundle of rays, of the wavefront dx by r dphi at the sphere. The sphere mirrors its
  * energy, over the square of the range, to the seabed, which sends mu cos(angle) / r^2 of it to the
- * sonar. The sonar is broadside of the sphere's hit, or in focused columns of the middle between
- * both hits. */
+ * sonar. The sonar is broadside of the sphere's hit, in focused columns of the middle between both
+ * hits. */
 static void add_bundle(const struct sea *sea, const struct reference_scene *scene, double x,
                        double elevation, double width, struct estimate *energies)
 {
@@ -315,8 +312,8 @@ static void add_bundle(const struct sea *sea, const struct reference_scene *scen
 
 /* The path sonar, smooth sphere, Lambert seabed, sonar and its reverse. In paper columns the path
  * is in its first hit's column, the reverse in the seabed's. In focused columns both are one echo
- * of twice the amplitude. 1 % allows for bins at the edges of a range and for seabed beyond the
- * ends of the track. */
+ * of twice the amplitude. 1 % is for bins at the edges of a range and seabed beyond the ends of the
+ * track. */
 CLAIM(a_glint_lights_the_seabed)
 {
     for (int is_focused = 0; is_focused < 2; is_focused++) {
@@ -455,8 +452,7 @@ static double ways_of(int path)
 
 /* Paths that begin at the seabed's mirror, above all sonar, seabed's mirror, sphere, seabed, sonar.
  * The reference has them upside down, with a sphere under its sea surface and a black seabed. The
- * mirror's point is 7.7 m in front of the sphere, so the sound spreads over 8 m more than up to
- * there. */
+ * mirror's point is 7.7 m in front of the sphere, so the sound spreads 8 m further. */
 CLAIM(sound_spreads_from_the_mirrored_sonar)
 {
     static struct reference_energy energy;
@@ -496,8 +492,7 @@ CLAIM(sound_spreads_from_the_mirrored_sonar)
 
 static float rays_counted; /* times the rays that there are */
 
-/* Weighs rays from the target as if there were rays_counted times as many. Samples have the rest of
- * each echo. */
+/* Weighs the target's rays as if there were rays_counted times as many. Samples have the rest. */
 static void weigh_rays(struct bench *bench, struct chain_trace *trace)
 {
     struct report *report = &bench->report;

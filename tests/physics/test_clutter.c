@@ -25,8 +25,7 @@ static void add_to_lattice(struct sea *sea, int number)
 
 /* Each of 100 objects has the same bits as alone in echo, footprint and shadow, since rays and
  * their random numbers are the patch's. The random numbers of glints depend on the object's number.
- * An object that is the first in both seas has the same bits of its glint, any other the same
- * energy. */
+ * The first object's glint has the same bits, any other the same energy. */
 CLAIM(each_is_what_it_is_alone)
 {
     static struct strips all[SIDE * SIDE], one;

@@ -1,5 +1,4 @@
-/* Fouling leaves an object the mean level of its material and takes as much from glints as
- * roughness does. */
+/* Fouling keeps the mean level of an object's material. It takes from glints as roughness does. */
 #include "sea.h"
 
 #define ROWS    65

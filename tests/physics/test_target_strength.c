@@ -1,5 +1,4 @@
-/* An object's target strength is the peak of its echo, wherever pixels lie and however far apart
- * they are. */
+/* An object's target strength is its echo's peak, wherever the pixels lie and at any spacing. */
 #include "sea.h"
 
 #define RANGE       50.0
