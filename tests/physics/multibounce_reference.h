@@ -33,10 +33,9 @@ struct multibounce_way {
 /* Returns the way out from the sonar and home to it, straight between the faces. */
 struct multibounce_way straight_way(const struct sea *sea);
 
-/* Returns the echo first -> last at a processor range through the pulse, all strips together. The
- * sources are broadside of the mean of both points. The echo is normalised by the square of half
- * the path. spacing: of the last face's points, m. For each, one point of the first face at most is
- * stationary. */
+/* Returns the echo first -> last at a processor range through the pulse, all strips together, with
+ * sources broadside of the mean of both points. It is normalised by the square of half the path.
+ * spacing: of the last face's points, m. For each, at most one of the first face is stationary. */
 double complex multibounce_echo(const struct sea *sea, const struct multibounce_way *way,
                                 const struct face *first, const struct face *last, double spacing,
                                 double range);

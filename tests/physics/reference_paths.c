@@ -332,8 +332,8 @@ static void scatter(struct run *run, struct ray *ray, struct reference_vector no
                       : 0.0;
 }
 
-/* Returns whether the ray belongs to fan `aim`; others do not count. The fans are of rays that meet
- * the target at once, the seabed at once, the target after the mirror (MET_MIRROR), or else the
+/* Returns whether the ray belongs to fan `aim`; others do not count. Fans are of rays that meet the
+ * target at once, the seabed at once, the target after the mirror (MET_MIRROR), or else the
  * surface. */
 static bool is_aimed(const struct ray *ray, int aim)
 {

@@ -312,8 +312,7 @@ static void add_bundle(const struct sea *sea, const struct reference_scene *scen
 
 /* The path sonar, smooth sphere, Lambert seabed, sonar and its reverse. In paper columns the path
  * is in its first hit's column, the reverse in the seabed's. In focused columns both are one echo
- * of twice the amplitude. 1 % is for bins at the edges of a range and seabed beyond the ends of the
- * track. */
+ * of twice the amplitude. 1 % is for bins at a range's edges and seabed beyond the track's ends. */
 CLAIM(a_glint_lights_the_seabed)
 {
     for (int is_focused = 0; is_focused < 2; is_focused++) {

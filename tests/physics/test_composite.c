@@ -231,8 +231,7 @@ static float *make_patch(struct sea *sea, enum patch_kind kind, uint64_t seed)
     return pixels;
 }
 
-/* Returns the share of a pixel's seabed energy from `column` columns beside: G^2 over that
- * pixel. */
+/* Returns the share of a pixel's seabed energy from `column` columns beside: G^2 over the pixel. */
 static double column_share(double resolution, int column)
 {
     const double deviation = resolution / (2.0 * sqrt(log(2.0))) / sqrt(2.0) / 0.025;
@@ -342,7 +341,7 @@ CLAIM(a_coherent_map_comes_back_as_itself)
 
 #define DEEP 5e-3f /* largest visibility in the deep shadow */
 
-/* Returns amplitudes of a speckle field, a mean over looks, formed with an along-track
+/* Returns a speckle field's amplitudes, a mean over looks, formed with an along-track
  * resolution. */
 static float *measured_amplitudes(struct sea *sea, int looks, double resolution_m)
 {
@@ -401,8 +400,7 @@ CLAIM(speckle_in_shadows_is_the_images)
     }
 }
 
-/* An image with the sonar's own response keeps it to the bit. So does one that is told to be
- * nominal. */
+/* An image of the sonar's own response keeps it to the bit. So does one told to be nominal. */
 CLAIM(a_nominal_response_is_left_alone)
 {
     for (int is_told = 0; is_told < 2; is_told++) {
@@ -448,8 +446,7 @@ static double peak_of(const struct injected *result, size_t first_row, size_t en
     return decibels_of_energy(peak);
 }
 
-/* One sphere is scaled to a target strength, one to a level over the seabed. A third stays as it
- * is. */
+/* One sphere is scaled to a target strength, one to a level over the seabed, a third is not. */
 CLAIM(levels_are_those_asked_for)
 {
     struct sea *sea = sea_open(SIDE, SIDE, RANGE);

@@ -142,8 +142,7 @@ static void draw_smooth_box(struct pose *pose)
     make_box(pose);
 }
 
-/* Draws a rough box. Its level top, a few dB darker than the seabed, is no highlight and no
- * shadow. */
+/* Draws a rough box. Its level top, a few dB darker than the seabed, is no highlight, no shadow. */
 static void draw_box(struct pose *pose)
 {
     draw_smooth_box(pose);
@@ -242,8 +241,7 @@ static double expected_shadow(const struct pose *pose)
 }
 
 /* Returns whether no sound passes below the body in the middle third of the rows. Such sound lights
- * the seabed behind the highlight, up to 2 pixels deep, which drowns in the highlight's side
- * lobes. */
+ * the seabed behind the highlight, up to 2 pixels deep, which drowns in side lobes. */
 static bool stands_in_seabed(const struct pose *pose)
 {
     double low, high;

@@ -152,7 +152,7 @@ CLAIM(processor_range_is_travel_time)
 
 #define ROWS    240
 #define COLUMNS 200
-#define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
+#define EDGE    24 /* pixels near an edge, which lack a part of |W|^2 or of the pulse */
 
 /* Returns mu sin^2(grazing) times the resolution cell's area and both intensities. */
 static double closed_form(const struct sea *sea, double processor_range)
