@@ -7,8 +7,7 @@
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"
 
-/* positions: vertices x 3; corners: triangles x 3 numbers of vertices. On success *mesh is for
- * mesh_clear. */
+/* positions: vertices x 3; corners: triangles x 3 numbers of vertices. *mesh is for mesh_clear. */
 static inline sonject_status mesh_from_arrays(struct report *report, const char *name,
                                               const double *positions, size_t vertices,
                                               const uint32_t *corners, size_t triangles,

@@ -32,8 +32,7 @@ void benchmark_expect(const struct report *report, sonject_status status);
 /* Returns zeroed memory, to be given to free(). */
 void *benchmark_array(size_t count, size_t bytes);
 
-/* Returns the threads for the native side: the cores of a CPU device, or the host's beside a GPU.
- */
+/* Returns the threads for the native side: a CPU device's cores, or beside a GPU the host's. */
 unsigned benchmark_threads(const struct device *device);
 
 /* Shares out `count` elements, a multiple of the grain, among threads and waits for all threads.

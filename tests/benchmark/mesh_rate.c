@@ -53,8 +53,7 @@ static void embree_trace(struct embree_scene *scene, bool is_coherent, const flo
 #else
 
 /* The largest distance, m, of Embree's origin before the ray's closest approach to the mesh's
- * middle. Embree does not look behind the origin, which lies where the ray begins if that is
- * nearer. */
+ * middle. Embree does not look behind the origin. It lies where the ray begins, if nearer. */
 #define BEFORE 3.0f
 
 struct embree_scene {

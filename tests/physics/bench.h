@@ -66,7 +66,7 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
 /* Adds the scene's only mesh: a tetrahedron within 0.5 m of its middle. */
 void bench_add_tetrahedron(struct bench *bench);
 
-/* Returns the bytes of a buffer of the device. Those of native may be rounded up. */
+/* Returns the bytes of a buffer of the device. Native's may be rounded up. */
 size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer);
 
 /* Returns a copy of a whole buffer of the device, to be given to free(). */

@@ -44,7 +44,7 @@ static void keep_nearest(struct meeting *nearest, double distance, struct refere
     }
 }
 
-/* Meets a sphere about (shift, 0, 0). Of a capsule's end (`end` -1 or 1) the outer half counts. */
+/* Meets a sphere about (shift, 0, 0). A capsule's end (`end` -1, 1) is the outer half. */
 static void meet_sphere(struct meeting *nearest, struct reference_vector o,
                         struct reference_vector d, double radius, double shift, int end)
 {
@@ -333,8 +333,7 @@ static void scatter(struct run *run, struct ray *ray, struct reference_vector no
 }
 
 /* Returns whether the ray belongs to fan `aim`; others do not count. Fans are of rays that meet the
- * target at once, the seabed at once, the target after the mirror (MET_MIRROR), or else the
- * surface. */
+ * target at once, the seabed at once, the target after the mirror (MET_MIRROR), or the surface. */
 static bool is_aimed(const struct ray *ray, int aim)
 {
     if (ray->hits == 1)

@@ -40,8 +40,7 @@ struct reference_body {
     double length, radius, lambert;
 };
 
-/* The surfaces that a path meets: digits of the path's number to the base 5, the first hit
- * first. */
+/* The surfaces that a path meets: digits of its number to the base 5, those of first hits first. */
 enum reference_surface {
     MET_NOTHING,
     MET_SEABED,
@@ -53,7 +52,7 @@ enum reference_surface {
 
 /* The seabed z = 0, the sonar (x, 0, altitude), one body. Lambert's law holds everywhere, for the
  * sea surface times D(i) D(s), D = 1 - exp(-P^2), P = phase * cosine. The sea surface's mirror has
- * R^2 exp(-P^2). With a reflection of 0 there is no mirror and D = 1. */
+ * R^2 exp(-P^2). A reflection of 0 means no mirror and D = 1. */
 struct reference_scene {
     double altitude, depth; /* depth INFINITY: no sea surface */
     double seabed_lambert;

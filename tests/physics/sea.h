@@ -51,8 +51,7 @@ struct sea {
 };
 
 /* Lays a patch with default parameters (100 kHz, 30 kHz, 10 m altitude, 2.5 cm), but with broadside
- * rays alone. The middle column is at a processor range. There is one sea at a time: the one before
- * is closed. */
+ * rays alone. The middle column is at a processor range. A sea that was open before is closed. */
 struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 
 /* Moves the middle column to a processor range, also after spacing or size changed. */

@@ -48,8 +48,8 @@ static struct sea *open_capsule(bool has_relief)
     return sea;
 }
 
-/* Opens an object within one bounding sphere, which also holds the seabed under the overhang. From
- * that seabed no cone leads to a target. Range and patch suit brute force: near and wide. */
+/* Opens an object within one bounding sphere, which also holds the seabed under the overhang. No
+ * cone leads from there to a target. Range and patch suit brute force: near and wide. */
 static struct sea *open_overhang(enum shape_kind shape, double diameter_m)
 {
     struct sea *sea = open_with(shape, 0.0, diameter_m);
@@ -172,8 +172,7 @@ CLAIM(one_way_stands_for_both)
  * Sound goes to and fro between them, so each path of the reference is scaled by the surfaces that
  * it meets. A drum on its side lies within one sphere, which also holds the seabed under its
  * overhang. Weak surfaces have fewer seeds, enough to show that shares scale. Paths begin on seabed
- * from well before the patch to its end. A bin of 3 mm, shared at either end of a range, is
- * systematic. */
+ * from well before the patch to its end. A bin of 3 mm, shared at a range's ends, is systematic. */
 CLAIM(orders_have_the_references_energy)
 {
     static struct reference_energy energy;
@@ -278,7 +277,7 @@ static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
 
 /* Adds one bundle of rays, of the wavefront dx by r dphi at the sphere. The sphere mirrors its
  * energy, over the square of the range, to the seabed, which sends mu cos(angle) / r^2 of it to the
- * sonar. The sonar is broadside of the sphere's hit, in focused columns of the middle between both
+ * sonar. The sonar is broadside of the sphere's hit, in focused columns of the middle of both
  * hits. */
 static void add_bundle(const struct sea *sea, const struct reference_scene *scene, double x,
                        double elevation, double width, struct estimate *energies)

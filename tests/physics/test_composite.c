@@ -122,9 +122,9 @@ CLAIM(shadows_and_highlights_have_their_energy)
     }
 }
 
-/* Where half of the seabed's energy arrives, half of it is in the image: the mean of |out|^2 /
- * |in|^2 weighted by |in|^2 is V + (1 - V) noise. A lattice of narrow slats has V between 0 and 1
- * in all of its shadow. */
+/* A share V of the seabed's energy that arrives is in the image: the mean of |out|^2 / |in|^2
+ * weighted by |in|^2 is V + (1 - V) noise. A lattice of narrow slats has V between 0 and 1 in all
+ * of its shadow. */
 CLAIM(a_partial_shadow_keeps_its_share)
 {
     struct sea *sea = sea_open(SIDE, SIDE, RANGE);
@@ -341,8 +341,7 @@ CLAIM(a_coherent_map_comes_back_as_itself)
 
 #define DEEP 5e-3f /* largest visibility in the deep shadow */
 
-/* Returns a speckle field's amplitudes, a mean over looks, formed with an along-track
- * resolution. */
+/* Returns amplitudes of a speckle field: a mean over looks, of an along-track resolution. */
 static float *measured_amplitudes(struct sea *sea, int looks, double resolution_m)
 {
     float *amplitude = claim_memory(PIXELS, sizeof *amplitude);
@@ -400,7 +399,7 @@ CLAIM(speckle_in_shadows_is_the_images)
     }
 }
 
-/* An image of the sonar's own response keeps it to the bit. So does one told to be nominal. */
+/* An image of the sonar's own response keeps it to the bit. One told to be nominal does, too. */
 CLAIM(a_nominal_response_is_left_alone)
 {
     for (int is_told = 0; is_told < 2; is_told++) {

@@ -240,8 +240,8 @@ static double expected_shadow(const struct pose *pose)
     return sum / LINES / SPACING;
 }
 
-/* Returns whether no sound passes below the body in the middle third of the rows. Such sound lights
- * the seabed behind the highlight, up to 2 pixels deep, which drowns in side lobes. */
+/* Returns whether no sound passes below the body in the middle third of the rows. Sound that does
+ * lights the seabed behind the highlight, up to 2 pixels deep, which drowns in side lobes. */
 static bool stands_in_seabed(const struct pose *pose)
 {
     double low, high;
@@ -473,10 +473,10 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
 }
 
 /* Speckle leaves standard errors of 0.3 pixels to a shadow and of 0.4 to 1 to a highlight. In some
- * poses that is more than a third of the tolerance. Of 400 poses with this seed and 8001 to 8003,
- * no shadow misses the tolerance and 1 highlight does. More than 2 in 100 would occur once in 500
- * such tests. The rms of errors over told ones is 1.04 to 1.16 for shadows and 0.90 to 1.15 for
- * highlights with those seeds. From 80 poses it is known to 1/sqrt(160) = 8 %. */
+ * poses that is more than a third of the tolerance. No shadow and 1 highlight miss it in 400 poses,
+ * with this seed and 8001 to 8003. More than 2 in 100 would occur once in 500 such tests. The rms
+ * of errors over told ones is 1.04 to 1.16 for shadows and 0.90 to 1.15 for highlights with those
+ * seeds. 80 poses know the rms to 1/sqrt(160) = 8 %. */
 CLAIM(random_slabs_are_measured)
 {
     const struct tally tally = measure_poses("slabs", draw_slab, POSES);

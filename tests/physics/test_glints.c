@@ -96,7 +96,7 @@ CLAIM(the_smallest_rough_sphere_keeps_its_energy)
 
 /* A target's front, depth(x, w) behind its nearest point, with x and w across the line of sight.
  * Its echo is -i/lambda times the integral of W(x) exp(2ik depth + ik w^2/r) G(offset - depth),
- * since the wavefront is curved in elevation alone. A resolution of 0: no W. depth < 0: nothing
+ * since the wavefront is curved in elevation alone. resolution 0: no W. depth < 0: nothing
  * there. */
 struct front {
     double (*depth)(double x, double w, const double *sizes);
@@ -218,8 +218,8 @@ CLAIM(a_cylinder_off_axis)
     }
 }
 
-/* With W, a tilted wall shows a delta^2/(2 lambda) a pixel while sin(theta) < lambda/4 delta
- * (8.6 degrees), and nothing beyond. */
+/* A tilted wall shows, with W, a delta^2/(2 lambda) a pixel while sin(theta) < lambda/4 delta (8.6
+ * degrees), and nothing beyond. */
 CLAIM(a_cylinder_leaves_the_aspects)
 {
     static const double degrees[] = {3.0, 5.0, 13.0};
@@ -561,8 +561,7 @@ CLAIM(a_torus)
 }
 
 /* Tip on, a cone shows its tip, lambda tan^2(alpha)/8 pi, and its rim, where its side ends
- * abruptly, a tan(alpha)/2. The side is flat enough for cells of lambda/8 to hold the rim's phase.
- */
+ * abruptly, a tan(alpha)/2. The side is so flat that cells of lambda/8 hold the rim's phase. */
 CLAIM(a_cone_tip_on)
 {
     static const double sizes[] = {0.3, 1.0 / 3.0}; /* radius, height over radius */

@@ -133,8 +133,7 @@ CLAIM(roughness_that_leaves_no_glint_is_not_traced)
     }
 }
 
-/* The pulse is far longer than the paths differ: |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and
- * back. */
+/* A pulse longer than the paths differ shows |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and back. */
 CLAIM(lloyds_mirror)
 {
     static const double reflections[] = {-1.0, 0.6};
@@ -210,7 +209,7 @@ CLAIM(a_wall_on_the_seabed)
     }
 }
 
-/* Half a sphere is buried. With its image in a rigid seabed the rest is a whole sphere, which the
+/* A sphere is half buried. With its image in a rigid seabed the rest is a whole sphere, which the
  * sonar and its image see from two sides. So D-M and M-D together return a/2, not 2 a/2. No path
  * leads to a wholly buried sphere, from either side. */
 CLAIM(buried_spheres)

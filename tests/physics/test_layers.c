@@ -270,7 +270,7 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
     return image;
 }
 
-/* Layers that differ in nothing are one, to the bit. Those over sonar and surface are not heard. */
+/* Layers that differ in nothing are one, to the bit. Layers over sonar and surface are silent. */
 CLAIM(layers_that_do_nothing)
 {
     static const struct water_layer equal[] = {
@@ -296,8 +296,8 @@ CLAIM(layers_that_do_nothing)
 
 /* ---- planes that do not bend ---- */
 
-/* Where density alone differs, rays are those of isovelocity water and R = (d1 - d2)/(d1 + d2) at
- * every angle. Each way that crosses the plane once keeps 1 - R^2, so energies keep its square. */
+/* Planes where density alone differs keep isovelocity water's rays and have, at every angle, R =
+ * (d1 - d2)/(d1 + d2). A way that crosses the plane once keeps 1 - R^2, energies its square. */
 #define DENSITY 0.4
 #define SEEDS   8
 

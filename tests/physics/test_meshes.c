@@ -87,7 +87,7 @@ CLAIM(facets_converge_to_the_sphere)
     }
 }
 
-/* The same rays meet the sphere and its mesh. Energies differ by less than the facets' depth over
+/* Rays that meet sphere and mesh are the same. Energies differ by less than the facets' depth over
  * the radius, 1e-4, and by the few rays between both outlines. */
 CLAIM(rough_balls_are_lit_like_the_sphere)
 {

@@ -128,8 +128,8 @@ static const double complex *row_of_response(struct sea *sea, double spacing, do
 
 /* A constant yaw makes the sway a sawtooth, as long as the pings' advance A. The phases have the
  * period A and the harmonics c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by -m
- * wavelength range / 2A, to the lobes of a grating of this spacing. Of the two lobes beside the
- * main one, the higher is on the side where the array looks. Lobes leave the beam of elements of 2
+ * wavelength range / 2A, to the lobes of a grating of this spacing. The higher one of the two
+ * beside the main lobe is on the side where the array looks. Lobes leave the beam of elements of 2
  * delta, whose zero is where lobe A/delta lies. delta is such that each lobe lies at a zero of all
  * others. The beam leaves the mean over |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A. For
  * whole t that is the mean of v^2 / (v + t)^2. */
@@ -327,8 +327,7 @@ static double heard_amplitude(const struct sea *sea, double pixel, double distan
     return cabs(sum) / total;
 }
 
-/* The response of a row with yaw is that of hydrophones at their true places, without their
- * beam. */
+/* Yaw gives a row the response of hydrophones at their true places, but for their beam. */
 CLAIM(yaw_is_what_hydrophones_hear)
 {
     const int reach = 100;

@@ -1,6 +1,5 @@
-/* Echoes of several smooth faces one after the other, compared with closed forms and physical
- * optics' double integral (multibounce_reference.h). Levels have a systematic tolerance of 0.2 dB.
- */
+/* Echoes of several smooth faces in turn, compared with closed forms and the double integral of
+ * physical optics (multibounce_reference.h). Levels have a systematic tolerance of 0.2 dB. */
 #include "multibounce_reference.h"
 
 #define ROWS       101
@@ -61,9 +60,8 @@ static void mix(double a, const double u[3], double b, const double v[3], double
         out[k] = a * u[k] + b * v[k];
 }
 
-/* Lays two plates, `wide` from the edge and `length` along it, that open towards the sonar. The
- * edge runs along the track or, upright, across it. About the edge, the bisector is `off` rad from
- * the sonar. */
+/* Lays two plates that open towards the sonar, `wide` from their edge and `length` along it. The
+ * edge runs along the track or, upright, across it. The bisector is `off` rad from the sonar. */
 static struct sight lay_dihedral(struct sea *sea, double wide, double length, bool is_upright,
                                  double off)
 {
@@ -147,8 +145,8 @@ CLAIM(a_dihedral)
 }
 
 /* Two faces echo in proportion, however little they reflect. 2 * 10^4 rays bring some 50 quanta
- * each, rounded by chance. The tolerance is four times half a quantum, over 50 and the root of
- * their number. */
+ * each, rounded by chance: four times half a quantum, over 50 and the root of the number of
+ * rays. */
 CLAIM(weak_faces_echo_in_proportion)
 {
     struct sea *sea = open_at(2);

@@ -246,8 +246,8 @@ static void expect_same_smooth_object(builder build, const double pose[3], doubl
 }
 
 /* Objects are rough in the first pose and smooth in all. The capsule lies in any pose, broadside,
- * and nose to the sonar, where the ends of the cylinder within would mirror the most (two outlines,
- * and four sides of joints, of which a half is seen). The box has a face to the sonar: a long one,
+ * and nose to the sonar, where the ends of the cylinder within would mirror the most. Its edges are
+ * two outlines and half of the joints' four sides. The box has a face to the sonar: a long one,
  * with the joint in it, and the nose, behind which the joint lies like another face. The lopsided
  * one is rough. The mesh of a union is turned about the vertical, and tipped. Facets of its
  * cylinder are 3 mm wide and lie 0.005 mm within it, 0.004 rad of phase. Edges are 10 m long. */

@@ -1,6 +1,5 @@
-/* The response of a point along the track (W, of the aspects' window) and in range (G, of the
- * pulse): resolution, side lobes, energy, and place between pixels. Images, seabeds and noise have
- * it. */
+/* The response of a point that images, seabeds and noise have, along the track (W, of the aspects'
+ * window) and in range (G, of the pulse): resolution, side lobes, energy, place between pixels. */
 #include "sea.h"
 
 #define RANGE      50.0
@@ -50,7 +49,7 @@ static double taylor_width(const struct weighting *shape)
 }
 
 /* Returns the transform of a weighting, 1 and a cosine, over its mean, at z resolutions or cells.
- * The table's has Hann's weights, and the phases of second and third order of an uncompensated
+ * The table's has Hann's weights, and phases of 2nd and 3rd order of an uncompensated
  * transducer. */
 static double complex transform(double cosine, bool is_table, double z)
 {

@@ -333,8 +333,7 @@ CLAIM(shadows_and_pings_widen_with_range)
 /* A turned array sees the screen from the place where the middle of its beam meets the screen.
  * Heading turns the bow towards the imaged side, and the beam backwards. So pings that see the
  * screen are ahead of it, which to starboard is before it in the view's rows. The long side has a
- * cosine off the slant plane, too, so x goes by the ground range. Columns lie 1 m behind the
- * screen. */
+ * cosine off the slant plane, so x goes by ground range. Columns are 1 m behind the screen. */
 CLAIM(heading_moves_shadows)
 {
     for (int i = 0; i < 2; i++) {

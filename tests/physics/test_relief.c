@@ -42,8 +42,7 @@ static double ramp(double slope, double way, double half)
                         : 0.0;
 }
 
-/* Lays a plane of slopes through the patch's middle: 0.7 m each way along the track, 2 m in
- * range. */
+/* Lays a plane through the patch's middle: 0.7 m each way along the track, or 2 m in range. */
 static void lay_slope(struct sea *sea, double along, double outward)
 {
     const double step = 0.025;
@@ -135,8 +134,7 @@ CLAIM(a_slope_along_the_track)
 }
 
 /* Integrates the row through the middle in double precision, over short steps of the ground. A step
- * that stands over all nearer ones is lit. It returns mu cos^2 of its energy in the squared pulse.
- */
+ * that stands over all nearer ones is lit and returns mu cos^2 of its energy, by G^2. */
 static const double *integrate_row(const struct sea *sea)
 {
     const double step = 2e-4, altitude = sea->sonar->altitude_m, x = middle_x(sea);

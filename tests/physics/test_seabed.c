@@ -1,6 +1,6 @@
 /* A plain Lambert seabed has mu sin^2(grazing) times the area of a pixel's point response, from the
- * first return on, for any number of rays, however energies are turned into pixels and shared
- * between bins. Its speckle is circular Gaussian with the point response's correlation. */
+ * first return on. Rays, pixels and the sharing between bins do not change that. Its speckle is
+ * circular Gaussian with the point response's correlation. */
 #include "sea.h"
 
 #define ROWS    240
@@ -86,8 +86,7 @@ CLAIM(a_map_multiplies)
         for (size_t row = at[i][0] - 10; row < at[i][0] + 10; row++)
             for (size_t column = at[i][1] - 10; column < at[i][1] + 10; column++)
                 sum += ratio[row * COLUMNS + column];
-        /* W's side lobes bring in a little of the brighter half: 1/(pi^2 50) of 2 times its level
-         */
+        /* W's side lobes bring in some of the brighter half: 1/(pi^2 50) of 2 times its level */
         expect_close("over closed form", sum / 400.0 / factor[i], 1.0, 0.01);
     }
     double line[COLUMNS] = {0.0};
@@ -108,8 +107,8 @@ CLAIM(a_map_multiplies)
 
 /* The energy of a strip up to a ground range y is the integral of mu sin^2(grazing) over its
  * length, mu h atan(y/h). There is none before the bin whose middle comes last before the first
- * return. The sonar is 10 m over the seabed, or 2 m in a patch that begins within the pulse's reach
- * of it. */
+ * return. The sonar is 10 m over the seabed, or 2 m in a patch that begins within reach of the
+ * pulse. */
 CLAIM(the_first_return)
 {
     static const double ranges[] = {10.6, 3.01}, altitudes[] = {10.0, 2.0};
@@ -191,8 +190,7 @@ static double trace_face(struct sea *sea, int step, double energy[2 * REACH + 1]
 /* A rough face at one range moves through a pixel in steps finer than bins. Its echo is the pulse
  * at its own range, of its own energy, wherever bins lie. Sharing between bins d apart widens the
  * pulse's energy, a Gaussian of variance s^2, by up to d^2/4. With d = s/3.4 its peak is 0.047 dB
- * low at most, and 0.02 mm off. Rays count the face's area to 0.2 %. Bins keep the mean over a
- * pixel. */
+ * low at most, and 0.02 mm off. Rays count the face's area to 0.2 %. Bins keep a pixel's mean. */
 CLAIM(a_face_within_a_pixel)
 {
     static double energy[STEPS][2 * REACH + 1], beyond[STEPS];

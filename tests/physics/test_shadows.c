@@ -155,7 +155,7 @@ CLAIM(starboard_is_port_from_the_other_end)
     expect_close("row of the truth", starboard->objects[0].row, 80.0, 1e-9);
 }
 
-/* The same scene on the other side makes the same image, since poses are meant in ping order. Other
+/* A scene makes the same image on both sides, since poses are meant in ping order. Other
  * rays are traced, so energies agree as far as the number of rays allows. */
 CLAIM(sides_look_alike)
 {
