@@ -310,7 +310,7 @@ static struct reference_vector about(struct reference_vector axis, double cosine
 }
 
 /* Scatters half of the rays by Lambert's law and half into the cone of the body's bounding sphere.
- * Off the body all follow Lambert's law. The weight gains f cos / density. */
+ * From the body all follow Lambert's law. The weight gains f cos / density. */
 static void scatter(struct run *run, struct ray *ray, struct reference_vector normal, int met,
                     double cosine_in)
 {

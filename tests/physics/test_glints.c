@@ -299,7 +299,7 @@ CLAIM(flat_faces)
     }
 }
 
-/* Both far edges of a plate turned off the sight echo, as by quadrature at all its ranges. */
+/* A plate turned off the sight echoes from both far edges, as by quadrature at all its ranges. */
 CLAIM(a_plate_off_the_sight)
 {
     const double tilt = 0.1, sizes[] = {0.15, 0.25 * cos(tilt), tan(tilt)};

@@ -133,7 +133,8 @@ CLAIM(roughness_that_leaves_no_glint_is_not_traced)
     }
 }
 
-/* A pulse longer than the paths differ shows |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and back. */
+/* Lloyd's mirror for a pulse far longer than the paths differ: there and back the amplitude is
+ * |e^{ikR1}/R1 + R e^{ikR2}/R2|^2. */
 CLAIM(lloyds_mirror)
 {
     static const double reflections[] = {-1.0, 0.6};
@@ -160,7 +161,7 @@ CLAIM(lloyds_mirror)
 }
 
 /* Returns physical optics' echo of an upright wall of height b on the seabed, for two heights of
- * images. The fan's wavefronts do not curve along-track. */
+ * sources. The fan's wavefronts do not curve along-track. */
 static double complex wall_family(const struct sea *sea, double b, double length, double one,
                                   double other, double range)
 {

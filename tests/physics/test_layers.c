@@ -270,7 +270,7 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
     return image;
 }
 
-/* Layers that differ in nothing are one, to the bit. Layers over sonar and surface are silent. */
+/* Layers that differ in nothing are one, to the bit. Those over sonar and surface do not count. */
 CLAIM(layers_that_do_nothing)
 {
     static const struct water_layer equal[] = {

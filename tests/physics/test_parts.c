@@ -1,5 +1,5 @@
-/* The union of an object's parts looks like a single shape of the same outline. Their rays differ,
- * so images agree as two seeds of one do. Smooth surfaces agree within sampling errors. */
+/* The union of an object's parts looks like a single shape of the same outline. Rays of the two
+ * differ, so images agree as two seeds of one do. Smooth surfaces agree within sampling errors. */
 #include "sea.h"
 
 #define ROWS    161

@@ -1,5 +1,5 @@
-/* The response of a point that images, seabeds and noise have, along the track (W, of the aspects'
- * window) and in range (G, of the pulse): resolution, side lobes, energy, place between pixels. */
+/* The point response of images, seabeds and noise, along the track (W, of the aspects' window) and
+ * in range (G, of the pulse): resolution, side lobes, energy, and place between pixels. */
 #include "sea.h"
 
 #define RANGE      50.0

@@ -94,8 +94,8 @@ CLAIM(a_point_widens_with_range)
             worst = fmax(worst, cabs(image->target[row * COLUMNS + column] /
                                          image->target[MIDDLE * COLUMNS + column] -
                                      beam(range, ((double)row - MIDDLE) * SPACING)));
-        /* for strips of an eighth of a wavelength, 2e-3 of the peak's phase at the beam's foot, and
-         * for the bins' range instead of the echo's */
+        /* errors of strips of an eighth of a wavelength, 2e-3 of the peak's phase at the beam's
+         * foot, and of the bins' range instead of the echo's */
         if (i < 3)
             expect_below("along-track cut less the beam", worst, 0.02);
     }
@@ -117,8 +117,8 @@ CLAIM(the_resolution_that_is_told_is_the_beam_s)
     }
 }
 
-/* Returns a turned array's beam, from the ball's own place. The cosine between the long side, ahead
- * in the image's rows, and the way is the sine. side: +-1, the way along which rows run. */
+/* Returns a turned array's beam at the ball's own place, by the cosine between the way and the long
+ * side, ahead in the image's rows. side: +-1, the way along which rows run. */
 static double complex turned_beam(const struct sea *sea, double x, double side)
 {
     const double heading = sea->sonar->array_heading_rad, pitch = sea->sonar->array_pitch_rad;

@@ -138,7 +138,7 @@ CLAIM(the_first_return)
 }
 
 /* Echoes from beyond the middles of the outermost bins are shared with these, too, since rays go
- * that far. Over its neighbour each of these bins has 1 but for 1e-4 of range. */
+ * that far. Each outermost bin has the energy of its neighbour but for 1e-4 of range. */
 CLAIM(outermost_bins_are_full)
 {
     struct sea *sea = sea_open(64, 96, 50.0);

@@ -1,5 +1,5 @@
-/* A composite traces windows about the pixels that objects change. The reference traces the whole
- * patch. It changes nothing outside windows. Inside, its rays bring equal echoes but for
+/* A composite traces windows about the pixels that objects change. A reference that traces the
+ * whole patch changes nothing outside them. Inside, its rays bring the same echoes but for
  * rounding. */
 #include "inject/compose.h"
 #include "sea.h"
