@@ -145,8 +145,8 @@ CLAIM(a_dihedral)
 }
 
 /* Two faces echo in proportion, however little they reflect. 2 * 10^4 rays bring some 50 quanta
- * each, rounded by chance. Four errors are 4 times half a quantum over 50 and the root of the
- * rays. */
+ * each, rounded by chance. The tolerance is four times half a quantum over 50, and over the root of
+ * the number of rays. */
 CLAIM(weak_faces_echo_in_proportion)
 {
     struct sea *sea = open_at(2);
