@@ -1,4 +1,4 @@
-/* CMocka with the headers that it wants before it, and what most tests in C have in common. */
+/* CMocka with the headers that must come before it, and macros that most tests in C share. */
 #ifndef SONJECT_TESTS_CLAIMS_H
 #define SONJECT_TESTS_CLAIMS_H
 
@@ -17,8 +17,8 @@
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define PI          3.14159265358979323846
 
-/* TEST(name) { ... } is run by the program, in the file's order, with `state` as CMocka gives it;
- * TEST_WITH: between what is made for it and what removes that. */
+/* The program runs each TEST(name) { ... } in the file's order, with `state` as CMocka gives it.
+ * TEST_WITH also names the fixture functions that run before and after the test. */
 #define TEST(name) TEST_WITH(name, NULL, NULL)
 #define TEST_WITH(name, before, after)                                                             \
     static void name(void **state);                                                                \
@@ -43,22 +43,21 @@ static inline int run_own_tests(CMFixtureFunction before, CMFixtureFunction afte
     return _cmocka_run_group_tests("tests", own_tests, own_test_count, before, after);
 }
 
-/* The program, with what is made before all tests and removed after them, or NULL. */
+/* Defines main, with the fixture functions that run before and after all tests, or NULL. */
 #define TEST_PROGRAM(before, after)                                                                \
     int main(void)                                                                                 \
     {                                                                                              \
         return run_own_tests(before, after);                                                       \
     }
 
-/* Knuth's numbers of 64 bits, whose upper ones are random: the next, the same for the same state.
- */
+/* Returns the next number of Knuth's 64-bit generator, whose upper bits are random. */
 static inline uint64_t next_random(uint64_t *state)
 {
     *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
     return *state;
 }
 
-/* The call must succeed; otherwise the test fails with the message of its report. */
+/* Fails the test with the report's message if the call does not succeed. */
 #define EXPECT_OK(report, call)                                                                    \
     do {                                                                                           \
         if ((call) != SONJECT_OK)                                                                  \

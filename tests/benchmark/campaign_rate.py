@@ -1,6 +1,7 @@
-"""Images a second of a campaign of 256 x 256 pixels, beside runs of the command on the same scenes,
-one process each, what a process alone takes, and a sidescan's campaign. Warm program caches. SONJECT_BENCHMARK_SWATHS:
-8 bit images, separated by ':', instead of swaths that sonject makes. Prints one line each."""
+"""Measures a campaign's images per second at 256 x 256 pixels and compares it with runs of the command on the
+same scenes, one process each, and with the time of a bare process. Measures a sidescan's campaign, too. Prints
+one line each, with warm program caches. SONJECT_BENCHMARK_SWATHS may name 8-bit images, separated by ':', to be
+used instead of swaths that sonject makes."""
 import json
 import os
 import pathlib
@@ -19,7 +20,7 @@ input:
 sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, resolution: 4 cm}
 """
 
-# A sidescan at high frequency, whose glints take most rays; chips of it are 96 x 160 pixels.
+# A sidescan at high frequency, whose glints take most rays. Its chips have 96 x 160 pixels.
 SIDESCAN = """\
 sonject: 1
 input:

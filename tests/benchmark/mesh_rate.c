@@ -1,9 +1,9 @@
-/* Rates of rays on a mesh of 534,360 triangles: the kernels on the OpenCL device, as native C of 8
- * lanes, and Embree in packets of 16 where it is installed; same rays, same number of cores, same
- * run; by the processors' time, since other programs may run too (on a GPU: by the clock). Primary
- * rays come from a fan as a sonar's do, strip by strip; bounced ones leave where these hit, by
- * Lambert's law. Prints a line a kind of ray, and how the device's time grows with the triangles;
- * fails only if device and native C disagree in a bit. */
+/* Rates of rays on a mesh of 534,360 triangles: kernels on the OpenCL device, kernels as native C
+ * of 8 lanes, and, where it is installed, Embree in packets of 16. All trace the same rays on the
+ * same number of cores in the same run. Processor time counts, since other programs may run, too
+ * (on a GPU: the clock). Primary rays come from a fan like a sonar's, strip by strip. Bounced rays
+ * leave their hits by Lambert's law. Prints one line per kind of ray, and how the device's time
+ * grows with the triangles. Fails only if device and native C differ in a bit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,9 +24,9 @@
 #endif
 
 #define REPEATS 7
-#define SIDE    1024 /* strips, and rays a strip */
+#define SIDE    1024 /* number of strips, and of rays per strip */
 
-/* The same rays through Embree, where it is installed; embree_open gives NULL where it is not. */
+/* Embree's copy of the mesh. Where Embree is not installed, embree_open returns NULL. */
 struct embree_scene;
 
 #ifndef HAS_EMBREE
@@ -52,8 +52,8 @@ static void embree_trace(struct embree_scene *scene, bool is_coherent, const flo
 
 #else
 
-/* Embree does not look behind a ray's origin. It is put where the ray begins, at most so far before
- * the mesh's middle, m. */
+/* The largest distance, m, of Embree's origin before the ray's closest approach to the mesh's
+ * middle. Embree does not look behind the origin. It lies where the ray begins, if nearer. */
 #define BEFORE 3.0f
 
 struct embree_scene {
@@ -154,13 +154,13 @@ static void trace_rays(const void *what, unsigned thread, uint32_t first, uint32
                          last);
 }
 
-/* Of all threads together. */
+/* Returns the processor time of all threads together. */
 static double processor_seconds(void)
 {
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/* Best time of REPEATS, s. */
+/* Returns the best time of REPEATS, s. */
 static double time_rays(const struct rays *rays, unsigned threads)
 {
     double best = INFINITY;
@@ -193,7 +193,7 @@ static void normalise(double v[3])
         v[axis] /= length;
 }
 
-/* A fan over strips that cover the mesh, from 17 m away and 10 m above. */
+/* Lays a fan over strips that cover the mesh, from 17 m away and 10 m above. */
 static void lay_fan(float *input, uint32_t rays)
 {
     for (uint32_t ray = 0; ray < rays; ray++) {
@@ -206,7 +206,7 @@ static void lay_fan(float *input, uint32_t rays)
     }
 }
 
-/* From where the fan's rays hit; returns how many, a multiple of 16. */
+/* Lays rays that leave the hits of the fan's rays. Returns their number, a multiple of 16. */
 static uint32_t lay_bounces(const float *output, uint32_t fan_rays, float *input)
 {
     uint32_t count = 0;
@@ -224,7 +224,7 @@ static uint32_t lay_bounces(const float *output, uint32_t fan_rays, float *input
         normalise(direction);
         set_ray(input, fan_rays, count++, from, direction, 0.0);
     }
-    /* planes of `count` rays */
+    /* closes the gaps between the planes, which now hold `count` rays each */
     count = count / 16 * 16;
     for (uint32_t plane = 1; plane < PROBE_INPUTS; plane++)
         memmove(input + plane * count, input + plane * fan_rays, count * sizeof *input);
@@ -240,7 +240,7 @@ struct bench_set {
     unsigned threads;
 };
 
-/* Returns whether native C and device differ in a bit; leaves the device's answers in output. */
+/* Returns whether native C and device differ in a bit. Leaves the device's answers in output. */
 static int compare(struct bench_set *set, const char *name, bool is_coherent, const float *input,
                    float *output, uint32_t rays)
 {
@@ -303,7 +303,7 @@ static void set_up(struct bench_set *set)
     probe_device_begin(&set->probe, &set->report, set->device, set->device->width, &set->mesh);
 }
 
-/* The device's time for each ray on rings of ever more triangles. */
+/* Prints the device's time per ray on rings of more and more triangles. */
 static void print_growth(struct bench_set *set, float *input, float *output)
 {
     static const uint32_t around[] = {24, 74, 232, 730, 2310};

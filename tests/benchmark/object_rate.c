@@ -1,6 +1,6 @@
-/* What clutter costs: 1...1000 parts strewn over a patch, once all of one size and once all
- * together of one area. Prints a table: ns a ray of the rough part, and of two interactions from
- * the seabed; seconds of the whole injection of these, with its share of image formation. */
+/* The cost of clutter: 1...1000 parts strewn over a patch, once with one size for each part and
+ * once with one area for all together. Prints a table: ns per ray of the rough part and of two
+ * interactions; seconds of the whole injection, of its tracing and of its image formation. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,11 +15,11 @@
 #include "trace/rough.h"
 
 #define PIXELS      512
-#define SIZE_M      0.2 /* of each, where size is kept */
-#define AREA_M2     4.0 /* of all together, where area is kept */
-#define OBJECTS_MAX 250 /* of a scene; more parts make clusters */
+#define SIZE_M      0.2 /* size of each part, in the rows of one size */
+#define AREA_M2     4.0 /* area of all parts, in the rows of one area */
+#define OBJECTS_MAX 250 /* most objects of a scene; more parts make clusters */
 
-/* The digits of i to a base, mirrored about the point: points that leave no gaps. */
+/* Returns the radical inverse of i: its digits to a base, mirrored about the point. */
 static double mirrored_digits(uint32_t i, uint32_t base)
 {
     double value = 0.0;
@@ -71,7 +71,8 @@ static void strew(struct benchmark_scene *set, uint32_t parts, double size)
     }
 }
 
-/* Of a CPU its processors' time over their number, as other programs may run too. */
+/* Returns the clock's time, s. On a CPU it is the processors' time over their number, since other
+ * programs may run, too. */
 static double seconds_of(const struct benchmark_scene *set)
 {
     const struct device *device = set->tracer.device;
@@ -95,7 +96,7 @@ static double ns_of_rough_rays(struct benchmark_scene *set)
     return 1e9 * taken / (double)(tracer->counts.rays - rays);
 }
 
-/* Of paths of two interactions, all fans and samples. */
+/* Returns the time per ray of two interactions, over all fans and samples. */
 static double ns_of_chains(struct benchmark_scene *set)
 {
     struct tracer *tracer = &set->tracer;
@@ -137,7 +138,7 @@ static void print_row(uint32_t parts, double size)
     strew(&set, parts, size);
     set.scene.injection.interactions = 2;
     benchmark_place(&set, PIXELS);
-    ns_of_rough_rays(&set); /* programs are built */
+    ns_of_rough_rays(&set); /* builds the programs */
     printf("%5u %6.3f | %7.1f", (unsigned)parts, size, ns_of_rough_rays(&set));
     printf(" | %9.1f", ns_of_chains(&set));
     print_injection(&set);
@@ -147,7 +148,7 @@ static void print_row(uint32_t parts, double size)
 
 int main(int argc, char **argv)
 {
-    /* another range of numbers: from, to */
+    /* arguments: another range of the number of parts */
     const uint32_t least = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 1;
     const uint32_t most = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1000;
     printf("parts size m |  ns/ray |  ns/chain | inject s  trace s   form s\n");

@@ -1,5 +1,5 @@
-/* Rates of the tracing kernels on the device native beside OpenCL's, on the same scenes (those of
- * the paper's Figures 6 and 7) in the same run; fails only if two disagree in a single bit. */
+/* Rates of the tracing kernels on the device native and on each OpenCL device, on the scenes of the
+ * paper's Figures 6 and 7 in the same run. Fails only if two devices differ in a single bit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,15 +23,15 @@ static void *read_back(struct benchmark_scene *set, device_buffer buffer, size_t
     return copy;
 }
 
-/* What is timed. */
+/* The launch that is timed. */
 struct program {
     struct launch *launch;
-    size_t tallies; /* the launch's buffer, and the bytes of it */
+    size_t tallies; /* number of the launch's buffer, and the buffer's size */
     size_t bytes;
-    struct chain_trace *chains; /* all of whose fans are traced; NULL: the launch's alone */
+    struct chain_trace *chains; /* all its fans are traced; NULL: the launch's fan alone */
 };
 
-/* What a device makes of it. */
+/* A device's rate and tallies. */
 struct measured {
     double paths_per_s;
     int64_t *tallies;
@@ -46,7 +46,7 @@ static double trace_fan(struct benchmark_scene *set, struct chain_trace *trace,
     return clock_seconds() - start;
 }
 
-/* Fan number i, or the launch as it is. */
+/* Traces fan number i of the chains, or the launch as it is. Returns the time, s. */
 static double run_once(struct benchmark_scene *set, const struct program *program, uint32_t i)
 {
     struct tracer *tracer = &set->tracer;
@@ -61,7 +61,7 @@ static double run_once(struct benchmark_scene *set, const struct program *progra
     return clock_seconds() - start;
 }
 
-/* The best of REPEATS runs, and the tallies of the last. */
+/* Returns the best rate of REPEATS runs, and the tallies of the last run. */
 static struct measured time_program(struct benchmark_scene *set, const struct program *program)
 {
     struct tracer *tracer = &set->tracer;
@@ -129,7 +129,7 @@ static struct measured time_row(struct benchmark_scene *set, int row)
                       : time_chains(set, (uint32_t)row);
 }
 
-/* native beside another device, in turn; returns whether their tallies differ. */
+/* Times native and another device in turn. Returns whether their tallies differ. */
 static int compare(const char *other)
 {
     static const char *const names[] = {"seabed and rough surfaces", "glints", "two interactions",
@@ -142,7 +142,7 @@ static int compare(const char *other)
             static struct benchmark_scene set;
             benchmark_set_up(&set, i == 0 ? "native" : other, row < 2 ? 512 : 256);
             set.scene.injection.ray_scale =
-                row < 2 ? 16.0 : 8.0; /* kernels are timed, not launches */
+                row < 2 ? 16.0 : 8.0; /* so that the overhead of launches does not count */
             measured[i] = time_row(&set, row);
             benchmark_clear(&set);
         }

@@ -3,8 +3,8 @@ import numpy
 
 
 def write_ring(path, around=1000, across=500):
-    """A ring with bumps and hollows, 2 x around x across triangles, as binary STL."""
-    turns = (2 * numpy.pi / n * (numpy.arange(n + 1) % n) for n in (around, across))  # it closes to the bit
+    """Writes a ring with bumps and hollows, 2 x around x across triangles, as binary STL."""
+    turns = (2 * numpy.pi / n * (numpy.arange(n + 1) % n) for n in (around, across))  # the ring closes to the bit
     u, v = numpy.meshgrid(*turns, indexing="ij")
     tube = 0.25 + 0.02 * numpy.sin(7 * u) * numpy.cos(5 * v)
     points = numpy.stack([(0.65 + tube * numpy.cos(v)) * numpy.cos(u), (0.65 + tube * numpy.cos(v)) * numpy.sin(u),

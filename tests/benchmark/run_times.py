@@ -1,9 +1,10 @@
-"""Times with warm program caches, one line each. Figures 6 (PoCL) and 7 (native) of the paper, from process start to files,
-beside the time that the process needs to do nothing (list the devices); the injection alone, by the
-C interface through the Python bindings, for a 512 x 512 patch; the targets of tools/targets with two
-interactions; a mesh of a million triangles from its file to an image of 400 x 400; and forming an image anew at two thirds of the bandwidth, beside
-a whole run at that bandwidth: figure 7 with three interactions, and the same with so many rays that
-tracing is nearly all of a run."""
+"""Prints times with warm program caches, one line each:
+- Figures 6 (PoCL) and 7 (native) of the paper, from process start to files, beside a process that only lists the devices
+- the injection alone for a 512 x 512 patch, by the C interface through the Python bindings
+- the targets of tools/targets with two interactions
+- a mesh of a million triangles, from its file to an image of 400 x 400
+- forming an image again at two thirds of the bandwidth, beside a whole run at that bandwidth: figure 7 with three
+  interactions, and the same with so many rays that tracing is nearly all of a run"""
 import os
 import pathlib
 import subprocess

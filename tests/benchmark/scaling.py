@@ -1,5 +1,5 @@
-"""How time and memory of a run grow with pixels, objects and triangles, with one and two interactions: a table in
-Markdown of `total` and `peak_memory_bytes` of run.json, programs compiled before."""
+"""Prints how time and memory of a run grow with pixels, objects and triangles, with one and two interactions. The
+Markdown table shows `total` and `peak_memory_bytes` of run.json. Programs are compiled before."""
 import json
 import os
 import pathlib
@@ -10,7 +10,7 @@ import tempfile
 from ring_mesh import write_ring
 
 COMMAND = os.environ["SONJECT_COMMAND"]
-RANGE = 40  # m, of the first column
+RANGE = 40  # slant range of the first column, m
 
 
 def write_scene(path, side, objects, interactions):
@@ -30,7 +30,7 @@ def capsules(side, count):
 
 
 def measure(folder, side, objects, interactions):
-    """The best of three runs: seconds and megabytes."""
+    """Returns seconds and megabytes of the fastest of three runs."""
     write_scene(folder / "scene.yaml", side, objects, interactions)
     runs = []
     for _ in range(3):

@@ -46,7 +46,7 @@ objects: [{name: ball, shape: sphere, diameter: 1 m, position: {row: 80, column:
 
 
 def seabed(rows, columns, seed):
-    """Rayleigh amplitudes on ripples, rms 0.1; by Python's functions, which are the same in all versions of NumPy."""
+    """Returns Rayleigh amplitudes on ripples, rms 0.1. Python's own functions give the same with every version of NumPy."""
     draw = random.Random(seed).random
     return numpy.array([
         [0.1 * (1 + 0.4 * math.sin(0.21 * column + 0.05 * row)) * math.sqrt(-math.log(1 - draw()))

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""Checksums of what a build's command makes of the frozen scenes, to see that a change leaves all
-of it as it was.
+"""Prints checksums of the files that a build's command makes of the frozen scenes. They show whether a change
+leaves every file as it was.
 
     outputs.py SONJECT                    prints a line for each file: checksum, two spaces, name
     outputs.py SONJECT|LIST SONJECT|LIST  compares two builds' commands, or such lists (*.txt)
-    --scenes NAME,...                     of these scenes of scenes.txt alone
+    --scenes NAME,...                     takes only these scenes of scenes.txt
     --keep DIR                            leaves the files in DIR/1 and DIR/2
 
-Exit status: 0 nothing differs, 1 something does. Of images, arrays and JSON a second line,
-NAME:content, has the checksum of the pixels or values, so that the same ones in another encoding
-are told from other ones. It takes 80 seconds of a core where PoCL has compiled the kernels before.
+Exit status: 0 nothing differs, 1 something does. Images, arrays and JSON have a second line,
+NAME:content, with the checksum of their pixels or values. It tells another encoding of the same
+content from another content. A build takes 80 seconds of a core if PoCL has compiled the kernels
+before.
 """
 
 import argparse
@@ -32,7 +33,7 @@ from PIL import Image
 
 from inputs import write_inputs
 
-# Members of JSON that are not compared, by the reason.
+# Members of JSON that are not compared, by reason.
 LEFT_OUT_FOR = {
     "time": ["times_s", "seconds", "images_per_second", "changed_ns"],
     "the machine": ["peak_memory_bytes", "device"],
@@ -41,14 +42,14 @@ LEFT_OUT_FOR = {
     "the file has lines of its own": ["bytes", "xxh3"],
 }
 LEFT_OUT = {name for names in LEFT_OUT_FOR.values() for name in names}
-# Such things in reports for reading.
+# Hashes and versions in reports for reading, which are not compared either.
 LEFT_OUT_OF_HTML = rb"[0-9a-f]{32}|sonject [0-9.]+"
-# Sums name the code that traced them; what `form` and `merge` make of them is compared.
+# Files without a line. Sums name the code that traced them; the output of `form` and `merge` is compared instead.
 UNLISTED = ["*.impulses", "*/work/*", "*/times.json"]
 
 
 def json_forms(text):
-    """The document as it is laid out, numbers as they are written; and its values."""
+    """Returns the document as it is laid out, with numbers as they are written, and its values alone."""
 
     def without(pairs):
         return {name: value for name, value in pairs if name not in LEFT_OUT}
@@ -64,7 +65,7 @@ def png_pixels(content):
 
 
 def tiff_pixels(content):
-    """Of strips, plain or deflated without a predictor, little-endian."""
+    """Reads a little-endian file of strips, plain or deflated without a predictor."""
     if content[:4] != b"II*\0":
         raise ValueError
     (place,) = struct.unpack_from("<I", content, 4)
@@ -89,7 +90,7 @@ def npy_pixels(content):
 
 
 def read_scenes():
-    """Lines of commands, by scene."""
+    """Returns the lines of commands, by scene."""
     scenes = {}
     text = (pathlib.Path(__file__).parent / "scenes.txt").read_text()
     for line in re.sub(r"\n +", " ", text).splitlines():
@@ -109,8 +110,8 @@ def digest(content):
 
 
 def checksums(path, name, place):
-    """The lines of one file: (name, checksum)."""
-    content = path.read_bytes().replace(str(place).encode(), b"LONG_INDEX")
+    """Returns the lines of one file: (name, checksum)."""
+    content = path.read_bytes().replace(str(place).encode(), b"PLACE")
     if path.suffix == ".json":
         written, values = json_forms(content)
         return [(name, digest(written)), (name + ":content", digest(values))]
@@ -131,7 +132,7 @@ def checksums(path, name, place):
 
 
 def scene_lines(command, name, place):
-    """Does what the scene asks and lists what it left."""
+    """Runs the scene's commands and returns the lines of the files that they leave."""
     folder = place / name
     folder.mkdir()
     for number, line in enumerate(SCENES[name], 1):
@@ -160,7 +161,7 @@ def folder_lines(folder, name, place):
 
 
 def build_lines(command, names, place):
-    """What the build's command makes, {name: checksum}."""
+    """Returns the lines of all files that the build's command makes, {name: checksum}."""
     place.mkdir(parents=True)
     place = place.resolve()
     tools = pathlib.Path(__file__).resolve().parents[2] / "tools"
@@ -176,7 +177,7 @@ def build_lines(command, names, place):
 
 
 def differences(before, after):
-    """One line for each file of which something differs."""
+    """Yields one line for each file that differs."""
     for name in sorted(before.keys() | after.keys()):
         content = name + ":content"
         if name.endswith(":content") or all(

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Makes the faults of faults.md, one at a time, in a copy of the tree, and tells which the tests catch.
+"""Makes the faults of faults.md, one at a time, in a copy of the tree, and tells which ones the tests catch.
 
-    seed_faults.py                all, after a run of all tests that the table names without any fault
+    seed_faults.py                all, after a run without any fault of all tests that the table names
     seed_faults.py 3 18           these alone, without that run
     --scratch DIR                 keeps copy and build there for the next time
 
-Of each the test that caught it last is built and run; all suites only if that passes, up to the first
-failure. One line each: caught by which test, survived, does not build, or stale, if the code is no
-longer what the table says. Exit status: 0 all were caught."""
+For each fault the test that caught it last is built and run. If that test passes, all suites run up to the
+first failure. Prints one line each: the test that caught it, survived, does not build, or stale, if the code
+no longer reads as in the table. Exit status: 0 if all were caught."""
 
 import argparse
 import json
@@ -29,7 +29,7 @@ def done(tree, *command):
 
 
 def make_copy(tree):
-    """The tracked files as they are now; a file that is the same keeps its time."""
+    """Copies the tracked files as they are now. A file that did not change keeps its time."""
     names = subprocess.check_output(["git", "ls-files", "-z"], cwd=HERE.parents[1], text=True)
     for name in filter(None, names.split("\0")):
         source, copy = HERE.parents[1] / name, tree / name
@@ -42,7 +42,7 @@ def make_copy(tree):
 
 
 def targets_of(tree, test):
-    """What ninja must build for a test, "suite / name"; exits where there is no such test."""
+    """Returns the files that ninja must build for a test, "suite / name". Exits if there is no such test."""
     suite, name = test.split(" / ")
     told = {kind: json.loads((tree / "build" / "meson-info" / f"intro-{kind}.json").read_text())
             for kind in ("tests", "targets")}
@@ -55,7 +55,7 @@ def targets_of(tree, test):
 
 
 def failure(tree, *chosen):
-    """The first test that fails, "" where none does."""
+    """Returns the first test that fails, or "" if none does."""
     command = ["meson", "test", "-C", "build", "--no-rebuild", "--maxfail", "1", *chosen]
     if done(tree, *command):
         return ""

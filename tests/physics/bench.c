@@ -12,7 +12,7 @@ static void expect_ok(struct bench *bench, sonject_status status)
 
 const char *bench_device;
 
-/* The one of bench_device that a bench gave back, with its programs. */
+/* A device of bench_device that a bench gave back, with its programs, or NULL. */
 static struct device *free_device;
 
 struct device *bench_open_device(struct bench *bench)
@@ -61,7 +61,7 @@ static void take_device(struct bench *bench)
     bench->device_width = bench->device->width;
 }
 
-/* As it was taken, for the next bench. */
+/* Keeps the device for the next bench if it is as it was taken. Closes any other device. */
 static void give_device_back(struct bench *bench)
 {
     struct device **device = &bench->tracer.device;
@@ -77,8 +77,8 @@ void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_
 {
     memset(bench, 0, sizeof *bench);
     scene_init(&bench->scene);
-    bench->scene.sonar.aperture_rad = 0.0; /* closed forms are of one aspect */
-    bench->scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR; /* and of a sinc */
+    bench->scene.sonar.aperture_rad = 0.0; /* closed forms assume one aspect */
+    bench->scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR; /* and a sinc */
     bench->rows = rows;
     bench->columns = columns;
     bench->tracer.report = &bench->report;

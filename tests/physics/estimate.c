@@ -67,7 +67,7 @@ double least_at(double (*function)(double at, const void *context), const void *
     return 0.5 * (low + high);
 }
 
-/* The argument at which a normal distribution reaches a probability, by bisection. */
+/* Returns the argument at which a normal distribution reaches a probability, by bisection. */
 static double normal_argument(double probability)
 {
     double low = -6.0, high = 6.0;

@@ -53,14 +53,14 @@ struct reference_sound sound_on_seabed(const struct sea *sea, double processor_r
     return reference_sound_at(&way, (double)reference_sum(&way, 0.0, p).range, 0.0);
 }
 
-/* p = cos/c of sound at a target, the same everywhere on its way. */
+/* Returns p = cos/c of sound at a target. It is the same all along the path. */
 static double parameter_of(const struct sea *sea, struct reference_sound sound)
 {
     return cos(sound.grazing) / sea->bench->water.layers[0].speed_mps;
 }
 
-/* Share of the energy that all planes under the sonar pass on, one way: 1 - R^2 = 4 Z1 Z2 /
- * (Z1 + Z2)^2 with Z = density c / sin. Planes of a profile, at which density is the same, pass
+/* Returns the share of the energy that all planes under the sonar pass on, one way: 1 - R^2 = 4 Z1
+ * Z2 / (Z1 + Z2)^2 with Z = density c / sin. Planes of a profile have no step of density and pass
  * all. */
 static double passed_on(const struct sea *sea, double p)
 {
@@ -85,8 +85,8 @@ double gain_of(const struct sea *sea, struct reference_sound out, struct referen
            sqrt(out.out * home.home * passed);
 }
 
-/* Rayleigh coefficient of a mirror times what roughness eta leaves, exp(-2 (k eta sin)^2), k and
- * angle those that sound has there: k sin = 2 pi f sqrt(1/c^2 - p^2). */
+/* Returns the Rayleigh coefficient of a mirror times exp(-2 (k eta sin)^2), the share that
+ * roughness eta leaves. k and angle are those at the mirror: k sin = 2 pi f sqrt(1/c^2 - p^2). */
 static double complex mirror_of(const struct sea *sea, const sonject_material_params *material,
                                 double speed, double p)
 {
@@ -121,7 +121,7 @@ struct pair {
     double radius;
 };
 
-/* Half the travel time by way of a point of the sphere. */
+/* Returns half the travel time by way of a point of the sphere. */
 static double half_time(double angle, const void *context)
 {
     const struct pair *pair = context;
@@ -189,7 +189,7 @@ void expect_families(const struct sea *sea, const struct line *line, uint32_t bo
     }
 }
 
-/* Energy of a Lambert sphere seen at an angle from where it is lit, over that seen from there. */
+/* Returns a Lambert sphere's energy, seen at an angle from the source, over that at no angle. */
 static double lambert_sphere(double angle)
 {
     return (sin(angle) + (PI - angle) * cos(angle)) / PI;

@@ -1,7 +1,7 @@
 #include "multibounce_reference.h"
 
 struct face_point {
-    double place[3], normal[3]; /* the normal is on the side that sound meets */
+    double place[3], normal[3]; /* the normal is on the side that the sound meets */
     double scale[2];            /* m per unit of the coordinates */
 };
 
@@ -52,10 +52,10 @@ static struct face_point point_at(const struct sea *sea, const struct face *face
     return point;
 }
 
-/* A path source - one - other - source, the sources broadside of the mean of both. */
+/* A path source - one - other - source, with both sources broadside of the mean of both points. */
 struct path {
-    double legs[3], ways[3][3]; /* lengths, unit vectors where they begin */
-    double last_way[3];         /* where the second leg ends */
+    double legs[3], ways[3][3]; /* lengths, and unit vectors at the legs' beginnings */
+    double last_way[3];         /* unit vector at the second leg's end */
     double length;
 };
 
@@ -98,15 +98,14 @@ double multibounce_range(const struct multibounce_way *way, const double one[3],
     return 0.5 * path_over(way, one, other).length;
 }
 
-/* What the search for a stationary point needs. */
+/* The input of the search for a stationary point. */
 struct search {
     const struct sea *sea;
     const struct multibounce_way *way;
     const struct face *first;
 };
 
-/* Path length by way of the point of the first face at `at`, displaced by steps of the given size
- * in m. */
+/* Returns the path length by the first face's point at `at`, displaced by steps of `step` m. */
 static double length_by(const struct search *search, const double at[2], int one_step,
                         int other_step, double step, const double place[3])
 {
@@ -117,7 +116,7 @@ static double length_by(const struct search *search, const double at[2], int one
     return path_over(search->way, there.place, place).length;
 }
 
-/* Second derivatives, 1/m, and gradient of the path length on the first face. */
+/* The gradient and the second derivatives, 1/m, of the path length on the first face. */
 struct shape_of_path {
     double gradient[2], one, other, mixed;
 };
@@ -144,8 +143,8 @@ static struct shape_of_path shape_of_path(const struct search *search, const dou
     return shape;
 }
 
-/* Newton's iteration from `at` on, by steps of at most 2 cm; whether it came to an end, and whether
- * that is on the face. */
+/* Runs Newton's iteration from `at` in steps of at most 2 cm. Returns whether it ends on the face.
+ * *has_ended: whether it ends at all. */
 static bool ends_on_face(const struct search *search, double at[2], const double place[3],
                          bool *has_ended)
 {
@@ -170,8 +169,8 @@ static bool ends_on_face(const struct search *search, double at[2], const double
 
 #define STARTS 9
 
-/* From the last point's, or from anywhere on the face. A plane has one such point, if not on this
- * face. */
+/* Searches from the previous solution in `at`, then from points all over the face. A plane has only
+ * one stationary point, on this face or beside it. */
 static bool find_stationary(const struct search *search, double at[2], const double place[3])
 {
     const struct face *first = search->first;
@@ -189,9 +188,9 @@ static bool find_stationary(const struct search *search, double at[2], const dou
     return false;
 }
 
-/* What a point of the last face gets of the first, and sends home: exp(ikr) times
- * -(i/2 lambda)(cos + cos)/(r1 d) lambda e^(i pi signature/4) / sqrt|det H|, likewise at the last.
- */
+/* Returns the sound that a point of the last face gets from the first and sends home: exp(ikr)
+ * times -(i/2 lambda)(cos + cos)/(r1 d) lambda e^(i pi signature/4) / sqrt|det H| for the first
+ * face, times -(i/2 lambda)(cos + cos)/r2 for the last. */
 static double complex echo_of_point(const struct search *search, const double at[2],
                                     const struct face_point *last, double range)
 {

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Heights between which the sound runs, from mirror to mirror. */
+/* The heights between which the sound runs, from mirror to mirror. */
 struct ascents {
     double from[REFERENCE_BOUNCES_MAX + 1], to[REFERENCE_BOUNCES_MAX + 1];
     size_t count;
@@ -11,7 +11,7 @@ struct ascents {
 static struct ascents ascents_of(const struct reference_way *way, double height)
 {
     struct ascents ascents;
-    /* mirrors take turns: the last one tells the first */
+    /* mirrors take turns, so the last one tells the first */
     bool is_seabed = way->bounces % 2 == 1 ? way->comes_from_seabed : !way->comes_from_seabed;
     double here = way->sonar_height;
     ascents.count = 0;
@@ -73,7 +73,7 @@ double reference_fastest(const struct reference_way *way, double height)
     return speed;
 }
 
-/* Range and time both grow with p. */
+/* Finds p by bisection. Range and time both grow with p. */
 static long double bisect(const struct reference_way *way, double height, long double wanted,
                           bool is_time)
 {
@@ -109,7 +109,7 @@ struct reference_sound reference_sound_at(const struct reference_way *way, doubl
     struct reference_sound sound;
     sound.time = (double)ray.time;
     sound.grazing = (double)acosl(there) * (way->bounces > 0 && way->comes_from_seabed ? -1 : 1);
-    /* dp = sin/c d(angle) at either end */
+    /* dp = sin/c d(angle) at both ends */
     const long double turn_there = sine_there / (long double)way->layers[0].speed_mps;
     const long double turn_here =
         sine_here / (long double)reference_speed_at(way, way->sonar_height);

@@ -1,11 +1,11 @@
-/* Sound through level layers as plainly as it can be summed up: Snell's law layer by layer along
-   the folded path, in long double, found by bisection. What the library's water is held to; it
-   shares nothing with it but the list of layers:
+/* Sound through level layers, summed up as plainly as possible: Snell's law layer by layer along
+   the folded path, in long double, found by bisection. The library's water is compared with it and
+   shares nothing with it but the list of layers.
 
-   With p = cos/c the same everywhere and h the height that is crossed in a layer, however often,
+   With p = cos/c the same everywhere and h the height crossed in a layer, however often,
      r = sum of h c p / sin,   t = sum of h / (c sin),   dr/dp = sum of h c / sin^3.
-   A source of unit intensity at 1 m sends cos d(angle) d(azimuth) into a tube, whose area across
-   the ray at the other end is r d(azimuth) times sin dr. Planes between layers pass everything. */
+   A source of unit intensity at 1 m sends cos d(angle) d(azimuth) into a tube. The tube's area
+   across the ray at the other end is r d(azimuth) sin dr. Planes between layers pass everything. */
 #ifndef SONJECT_TESTS_REFERENCE_LAYERS_H
 #define SONJECT_TESTS_REFERENCE_LAYERS_H
 
@@ -15,7 +15,7 @@
 
 #include "medium/water.h"
 
-/* Layers, and how sound comes from the sonar: by `bounces` mirrors in turn, the last of which is
+/* The layers, and the way of sound from the sonar: by `bounces` mirrors in turn. The last mirror is
    the seabed (at 0) or the sea surface (at depth). */
 struct reference_way {
     const struct water_layer *layers; /* borrowed */
@@ -25,37 +25,37 @@ struct reference_way {
     bool comes_from_seabed;
 };
 
-/* From the sonar to a height; in the units of metres, seconds and rad. */
+/* A ray from the sonar to a height, in m, s and rad. */
 struct reference_ray {
     long double range, time, length;
-    long double growth; /* of range with p */
+    long double growth; /* derivative of the range with p */
 };
 
 #define REFERENCE_BOUNCES_MAX 4
 
-/* The height that is crossed in a layer on the way to a height. */
+/* Returns the height that is crossed in a layer on the way to `height`, m. */
 long double reference_crossed(const struct reference_way *way, size_t layer, double height);
 
-/* Sums of the ray p = cos/c. */
+/* Returns the sums along the ray of p = cos/c. */
 struct reference_ray reference_sum(const struct reference_way *way, double height, long double p);
 
 double reference_speed_at(const struct reference_way *way, double height);
 
-/* The fastest sound on the way to a height: p stays below its reciprocal. */
+/* Returns the largest sound speed on the way to a height. p stays below its reciprocal. */
 double reference_fastest(const struct reference_way *way, double height);
 
-/* p of the ray to a point. */
+/* Returns p of the ray to a point. */
 long double reference_parameter(const struct reference_way *way, double range, double height);
 
-/* p of the ray that meets the seabed after a time. */
+/* Returns p of the ray that meets the seabed after a time. */
 long double reference_parameter_of_time(const struct reference_way *way, long double time);
 
 /* Sound at a point of the lowest layer. */
 struct reference_sound {
     double time;
-    double grazing;   /* of its direction, positive downwards */
-    double wavefront; /* its radius in elevation */
-    double out, home; /* intensities there from the sonar, and at the sonar from there */
+    double grazing;   /* grazing angle of its direction, positive downwards */
+    double wavefront; /* radius of the wavefront in elevation */
+    double out, home; /* intensities at the point from the sonar, and at the sonar from the point */
 };
 
 struct reference_sound reference_sound_at(const struct reference_way *way, double range,

@@ -1,6 +1,6 @@
 #include "reference_paths.h"
 
-#define LIFT_M 1e-9 /* far above rounding at some 100 m (1e-14), far below every size */
+#define LIFT_M 1e-9 /* far above the rounding at some 100 m (1e-14), far below every size */
 
 /* ---- surfaces ---- */
 
@@ -30,7 +30,7 @@ static struct reference_vector unit(struct reference_vector a)
     return along;
 }
 
-/* Nearest meeting so far, in the body's own axes. */
+/* The nearest hit so far, in the body's own axes. */
 struct meeting {
     double distance;
     struct reference_vector normal;
@@ -44,7 +44,7 @@ static void keep_nearest(struct meeting *nearest, double distance, struct refere
     }
 }
 
-/* Sphere about (shift, 0, 0); of a capsule's end (`end` -1 or 1) only what lies beyond it. */
+/* Meets a sphere about (shift, 0, 0). A capsule's end (`end` -1, 1) is the outer half. */
 static void meet_sphere(struct meeting *nearest, struct reference_vector o,
                         struct reference_vector d, double radius, double shift, int end)
 {
@@ -59,7 +59,7 @@ static void meet_sphere(struct meeting *nearest, struct reference_vector o,
         keep_nearest(nearest, distance, unit(outwards));
 }
 
-/* Round side of a cylinder along own x. */
+/* Meets the round side of a cylinder along own x. */
 static void meet_side(struct meeting *nearest, struct reference_vector o, struct reference_vector d,
                       double radius, double half_length)
 {
@@ -94,14 +94,14 @@ static struct reference_vector in_own_axes(const struct reference_body *body,
     return own;
 }
 
-/* The normal is in the scene's axes. */
+/* Meets the body. The normal is returned in the scene's axes. */
 static struct meeting meet_body(const struct reference_body *body, struct reference_vector origin,
                                 struct reference_vector direction)
 {
     struct meeting nearest = {INFINITY, {0.0, 0.0, 0.0}};
     const struct reference_vector from = reference_sum(origin, -1.0, body->centre);
     const double half = 0.5 * body->length, radius = body->radius;
-    if (body->shape == REFERENCE_SPHERE) { /* as good in any axes */
+    if (body->shape == REFERENCE_SPHERE) { /* the same in all axes */
         meet_sphere(&nearest, from, direction, radius, 0.0, 0);
         return nearest;
     }
@@ -148,7 +148,7 @@ bool reference_blocked(const struct reference_scene *scene, struct reference_vec
     return meet_body(&scene->body, from, unit(way)).distance < sqrt(reference_dot(way, way));
 }
 
-/* 1 - exp(-P^2), what roughness takes. */
+/* Returns 1 - exp(-P^2), the share that roughness takes from the mirror. */
 static double taken(const struct reference_scene *scene, double cosine)
 {
     const double phase = scene->phase * cosine;
@@ -170,7 +170,7 @@ static double lambert_of(const struct reference_scene *scene, int met, double co
     return met == MET_TARGET ? scene->body.lambert : scene->seabed_lambert;
 }
 
-/* Of a sphere that holds the body. */
+/* Returns the radius of a sphere that holds the body. */
 static double bounding_radius(const struct reference_body *body)
 {
     return hypot(0.5 * body->length, body->radius);
@@ -194,7 +194,7 @@ struct ray {
     double sonar_x, length, weight;
     double first_leg;
     int path, hits;
-    bool has_spread; /* the wavefront met something that is no mirror */
+    bool has_spread; /* the ray met something that is no mirror */
 };
 
 int reference_met(int path, int met[REFERENCE_ORDERS])
@@ -251,7 +251,8 @@ static bool is_looked_at(const struct run *run, struct reference_vector seabed)
            fabs(seabed.x - run->scene->body.centre.x) <= request->reach_x;
 }
 
-/* Paths from the sea surface by way of the target to the seabed are found in reverse. */
+/* Returns false where the library cannot find the path. It finds paths surface - target - seabed in
+ * reverse, so their seabed must be looked at. */
 static bool is_found_from_seabed(const struct run *run, const struct ray *ray)
 {
     const bool is_reverse = ray->hits == 3 && ray->path / 25 >= MET_SURFACE &&
@@ -259,7 +260,7 @@ static bool is_found_from_seabed(const struct run *run, const struct ray *ray)
     return !is_reverse || is_looked_at(run, ray->origin);
 }
 
-/* The hit is seen by the source: straight, and (but for the surface itself) in the mirror. */
+/* Connects the hit to the source: straight, and by the mirror unless the surface itself is hit. */
 static void connect(struct run *run, const struct ray *ray, struct reference_vector normal, int met,
                     double cosine_in)
 {
@@ -308,8 +309,8 @@ static struct reference_vector about(struct reference_vector axis, double cosine
                          sine * sin(turn), cross(axis, first));
 }
 
-/* Half by Lambert's law, half into the cone of the sphere that holds the body, and off the body all
- * by Lambert's law: f cos / density. */
+/* Scatters half of the rays by Lambert's law and half into the cone of the body's bounding sphere.
+ * From the body all follow Lambert's law. The weight gains f cos / density. */
 static void scatter(struct run *run, struct ray *ray, struct reference_vector normal, int met,
                     double cosine_in)
 {
@@ -331,8 +332,8 @@ static void scatter(struct run *run, struct ray *ray, struct reference_vector no
                       : 0.0;
 }
 
-/* What fan `aim` stands for: rays that meet the target at once, the seabed at once, the target
- * after the mirror (MET_MIRROR), or the surface otherwise; others do not count. */
+/* Returns whether the ray belongs to fan `aim`; others do not count. Fans are of rays that meet the
+ * target at once, the seabed at once, the target after the mirror (MET_MIRROR), or the surface. */
 static bool is_aimed(const struct ray *ray, int aim)
 {
     if (ray->hits == 1)
@@ -342,7 +343,7 @@ static bool is_aimed(const struct ray *ray, int aim)
     return true;
 }
 
-/* The sea surface is one of its two parts, by lot. */
+/* Follows a ray. At the sea surface a lot decides between the smooth and the rough part. */
 static void follow(struct run *run, struct ray *ray, int aim)
 {
     const struct ranges *ranges = &run->request->ranges;
@@ -368,7 +369,7 @@ static void follow(struct run *run, struct ray *ray, int aim)
             ray->way.z = -ray->way.z;
             continue;
         }
-        if (!ray->has_spread) { /* dA / r1^2, which only now is known */
+        if (!ray->has_spread) { /* dA / r1^2, now that r1 is known */
             ray->weight /= ray->length;
             ray->first_leg = ray->length;
         }
@@ -378,7 +379,7 @@ static void follow(struct run *run, struct ray *ray, int aim)
     }
 }
 
-/* Where rays begin along the track, and their elevations upwards. */
+/* The x at which rays begin, m, and their elevations, rad, upwards. */
 struct fan {
     double first_x, last_x, first, last;
 };
@@ -388,8 +389,8 @@ static double area_of(const struct fan *fan)
     return (fan->last_x - fan->first_x) * (fan->last - fan->first);
 }
 
-/* Every other ray is of the part of the fan that brings most. Elevations are stratified inside a
- * batch: one ray a stratum. */
+/* Traces a fan. Every other ray is from `most`, the part of the fan that brings most energy.
+ * Elevations are stratified inside a batch, one ray a stratum. */
 static void trace_fan(struct run *run, int aim, const struct fan *all, const struct fan *most)
 {
     const uint64_t rays = run->request->rays / REFERENCE_BATCHES / 2 * 2;
@@ -426,7 +427,7 @@ static void trace_batch(struct run *run)
         const struct fan fan = {centre.x - radius, centre.x + radius, middle - half, middle + half};
         trace_fan(run, aims[i], &fan, &fan);
     }
-    /* a first hit beside the track may be heard in a column between it and a last one */
+    /* a first hit beside the track may be heard in a column on the way to the last hit */
     const double track = request->last_x - request->first_x;
     const double beside =
         request->is_focused ? fmin(0.5 * track, fmax(0.0, request->reach_x - 0.5 * track)) : 0.0;
@@ -487,7 +488,8 @@ void reference_trace(const struct reference_scene *scene, const struct reference
         memset(&run.batch, 0, sizeof run.batch);
         trace_batch(&run);
         for (int k = 0; k < 2; k++)
-            for (int i = 0; i < REFERENCE_PATHS * REFERENCE_BINS; i++) { /* sums, for now */
+            for (int i = 0; i < REFERENCE_PATHS * REFERENCE_BINS;
+                 i++) { /* sums of values and squares, for now */
                 kept[k][i].mean += traced[k][i];
                 kept[k][i].error += traced[k][i] * traced[k][i];
             }

@@ -1,13 +1,13 @@
-"""The validation report: what the physics tests measured beside what closed forms say.
+"""Writes the validation report: figures that the physics tests measured, beside the expected ones.
 
     python3 tests/physics/report.py [BUILD] > report.md
 
-runs the tests of the build folder ("build" by default) and writes a table for each; --log FILE takes
-meson's log of an earlier run, BUILD/meson-logs/testlog.json, instead. Fails where a test failed.
+runs the tests of the build folder ("build" by default) and writes a table for each. --log FILE takes
+meson's log of an earlier run instead, BUILD/meson-logs/testlog.json. Fails if a test failed.
 
-With --page FILE the tables of that page, docs/validation.md, get the figures instead. Its rows name
-program and figure, and what was chosen for it stays. With --check FILE nothing is written; a page
-that says anything else fails.
+--page FILE writes the figures into the tables of that page, docs/validation.md, instead. The rows name
+program and figure, and their choice stays. --check FILE writes nothing, and fails if the page says
+anything else.
 """
 
 import argparse
@@ -26,7 +26,7 @@ BELOW = re.compile(rf"(?:.*: )?(.+?): {NUMBER}, to be below {NUMBER}$")
 
 
 class Check:
-    """What was compared under one name: how often, and when it was nearest to its limit."""
+    """The comparisons of one figure: their number, and the one that was nearest to its limit."""
 
     def __init__(self):
         self.count = 0
@@ -44,7 +44,7 @@ def share_of(distance, room):
 
 
 def read_checks(output):
-    """Name: Check, of a program's output."""
+    """Returns the checks in a program's output, {name: Check}."""
     checks = collections.defaultdict(Check)
     for line in output.splitlines():
         close, below = CLOSE.fullmatch(line), BELOW.fullmatch(line)
@@ -60,7 +60,7 @@ def read_checks(output):
 
 
 def first_comment(name):
-    """What the test's source says of itself."""
+    """Returns the first comment of the test's source."""
     source = FOLDER / f"test_{name}.c"
     text = source.read_text(encoding="utf-8") if source.is_file() else ""
     found = re.match(r"/\*(.*?)\*/", text, flags=re.S)
@@ -68,7 +68,7 @@ def first_comment(name):
 
 
 def read_log(path):
-    """(name, passed, output) of the physics tests in meson's log, by name."""
+    """Returns (name, passed, output) of the physics tests in meson's log, by name."""
     entries = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
     named = [(entry["name"].rpartition(" / "), entry) for entry in entries]
     return sorted((name, entry["result"] == "OK", entry.get("stdout", ""))
@@ -80,7 +80,7 @@ def cell(text):
 
 
 def report(tests):
-    """The report's lines."""
+    """Returns the report's lines."""
     failed = [name for name, passed, _ in tests if not passed]
     compared = [read_checks(output) for _, _, output in tests]
     total = sum(check.count for checks in compared for check in checks.values())
@@ -103,7 +103,7 @@ ROW = re.compile(r"^\| ([^|]+) \| `(\w+)`: ([^|]+?) \|.*$", flags=re.M)
 
 
 def rounded(measured, expected, tolerance):
-    """The cells of a check, to the second digit of the tolerance."""
+    """Returns the cells of a check, rounded to the second digit of the tolerance."""
     if not tolerance:
         return f"{float(measured):.2g}", expected
     room = float(tolerance.split()[-1])
@@ -113,7 +113,7 @@ def rounded(measured, expected, tolerance):
 
 
 def fill_page(text, tests):
-    """The page's text with the figures in its rows."""
+    """Returns the page's text with the figures in its rows."""
     checks = {name: read_checks(output) for name, _, output in tests}
 
     def fill(row):

@@ -6,7 +6,7 @@
 
 /* ---- claims ---- */
 
-/* What is done when the claim ends. */
+/* The functions to be called when the claim ends. */
 static struct {
     void (*clear)(void *);
     void *of;
@@ -34,7 +34,7 @@ const char *claim_device(void)
 }
 
 static struct bench the_bench;
-static struct sea the_sea; /* its bench is NULL where none is open */
+static struct sea the_sea; /* its bench is NULL if no sea is open */
 
 static void close_sea(void)
 {
@@ -207,7 +207,7 @@ void sea_add_scour(struct sea *sea, double width_m, double depth_m)
 void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const float *heights_m)
 {
     const size_t count = (size_t)grid->rows * grid->columns;
-    float *copy = malloc(count * sizeof *copy); /* the scene frees it */
+    float *copy = malloc(count * sizeof *copy); /* freed by the scene */
     assert_non_null(copy);
     memcpy(copy, heights_m, count * sizeof *copy);
     relief_features_take_grid(&sea->bench->scene.relief, grid, copy);
@@ -228,7 +228,7 @@ static void clear_placements(void *placements)
     placements_clear(placements);
 }
 
-/* What was laid before stays until the claim ends, for those who look at it. */
+/* Earlier placements stay until the claim ends, since claims may hold pointers to them. */
 void sea_ready(struct sea *sea)
 {
     struct placements *before = claim_memory(1, sizeof *before);
@@ -316,7 +316,7 @@ void face_sonar(struct sea *sea, double forward)
     sonject_object_params *object = sea_object(sea, 0);
     object->heading_rad = -0.5 * PI;
     object->pitch_rad = 0.0;
-    for (int i = 0; i < 50; i++) { /* turning moves the centre: its lowest point is held */
+    for (int i = 0; i < 50; i++) { /* turning moves the centre, since the lowest point stays */
         sea_ready(sea);
         const double *centre = sea_centre(sea, 0);
         object->pitch_rad = atan2(sea->sonar->altitude_m - centre[2], centre[1]) + forward;

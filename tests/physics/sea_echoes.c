@@ -1,7 +1,7 @@
-/* What rays bring, before the image is formed. */
+/* The sea's lines and energies (sea.h) before the image is formed. */
 #include "sea.h"
 
-/* Adds strips of bins to those of the line. */
+/* Adds strips of bins to the line's bins. */
 static void add_strips(struct line *line, int32_t first_line_bin, const struct line_grid *grid,
                        struct span strips, const float *real_part, const float *imaginary_part)
 {
@@ -43,7 +43,7 @@ static void add_multibounce(const struct multibounce *multibounce, struct line *
     }
 }
 
-/* The object is one part. */
+/* The object must be one part. */
 struct line sea_line(struct sea *sea, uint32_t object)
 {
     struct tracer *tracer = &sea->bench->tracer;
@@ -263,7 +263,7 @@ void expect_energies(const char *what, const struct energies *measured, int orde
     for (int range = 0; range < count; range++) {
         struct estimate energy = energy_of(measured, order, range);
         energy.error = hypot(energy.error, expected[range].error);
-        if (expected[range].mean < 0.02 * most) /* beside the edge of what comes first */
+        if (expected[range].mean < 0.02 * most) /* at the edge of the earliest echoes */
             continue;
         print_message("%s, order %d, range %d: ", what, order + 1, range);
         expect_estimate("energy, m2", energy, expected[range].mean,

@@ -1,4 +1,4 @@
-/* What is formed of rays, and put into measured images. */
+/* The sea's images and injections (sea.h). */
 #include "sea.h"
 
 static double complex *join_planes(const float *real_part, const float *imaginary_part,

@@ -1,12 +1,12 @@
-/* The number of rays follows the accuracy that a scene asks for. The error that is claimed and told
- * is compared with that against the same scene traced with many times the rays. */
+/* The number of rays follows the accuracy that a scene asks for. The accuracy and the error that is
+ * told are compared with the error against the same scene traced with many times the rays. */
 #include "sea.h"
 
 #define ROWS           320
 #define COLUMNS        320
 #define PIXELS         ((size_t)ROWS * COLUMNS)
 #define RANGE          45.0
-#define REFERENCE_RAYS 8.0 /* times those of the finer accuracy: adds 6 % to the error */
+#define REFERENCE_RAYS 8.0 /* times the rays of the finer accuracy; adds 6 % to the error */
 #define SEEDS          6
 #define NOISE_DB       (-20.0)
 
@@ -28,7 +28,7 @@ static void lay_beam(struct sea *sea)
     sea_add_capsule(sea);
 }
 
-/* What grows on objects is the scene's, and no error of rays. */
+/* Fouling belongs to the scene and is no error of rays. */
 static void lay_fouled(struct sea *sea)
 {
     sea_add_capsule(sea);
@@ -56,7 +56,7 @@ static float *plain_seabed(void)
     return pixels;
 }
 
-/* Of the reference, over the pixels about one of the patch's inner ones. */
+/* Returns the reference's mean energy over 5 x 5 pixels about an inner pixel of the patch. */
 static double energy_about(const struct injected *reference, size_t i)
 {
     double sum = 0.0;
@@ -66,7 +66,7 @@ static double energy_about(const struct injected *reference, size_t i)
     return sum / 25.0;
 }
 
-/* rms over the reference's changed pixels. */
+/* Returns the rms error over the reference's changed pixels. */
 static double error_of(const struct sea *sea, const struct injected *result,
                        const struct injected *reference)
 {
@@ -85,7 +85,7 @@ static double error_of(const struct sea *sea, const struct injected *result,
     return sqrt(sum / count);
 }
 
-/* Results of one accuracy, by rays of their own. */
+/* The results of one accuracy, each by rays of its own. */
 struct results {
     const struct injected *of_seed[SEEDS];
     double rays, told;
@@ -107,8 +107,8 @@ static struct results inject_to(struct sea *sea, const float *pixels, double acc
     return results;
 }
 
-/* What is told errs to the safe side, since errors fall faster than with the root of the rays, but
- * for the rare bright paths of two interactions, which pilots may miss. */
+/* The error that is told is mostly too large, since errors fall faster than with the root of the
+ * rays. It may be too small with two interactions, whose rare bright paths pilots may miss. */
 static void expect_accuracy(const struct sea *sea, const struct results *results, double accuracy,
                             const struct injected *reference)
 {

@@ -1,17 +1,17 @@
-/* A synthetic aperture sees shadows from all its aspects, wider and brighter the farther the target
- * is, and puts what it sees where it is. */
+/* A synthetic aperture sees shadows from all its aspects. Penumbrae are wider and shadows brighter
+ * the farther the target is. Echoes are imaged at their true places. */
 #include "sea.h"
 
 #define ROWS          241
 #define COLUMNS       401
 #define MIDDLE_ROW    120
 #define ROW_SPACING   0.025                       /* m, and the resolution */
-#define SLOPE         (0.015 / (2 * ROW_SPACING)) /* of the aspects: wavelength over 2 delta */
+#define SLOPE         (0.015 / (2 * ROW_SPACING)) /* of the aspects' sines: lambda / 2 delta */
 #define RANGE         44.0
-#define GROUND        40.0 /* of a screen */
+#define GROUND        40.0 /* ground range of a screen, m */
 #define SCREEN_HEIGHT 1.8  /* m */
 
-/* A patch whose middle column is at a range, seen by the aspects of its response. */
+/* Opens a patch whose middle column is at a range, seen from the aspects of its response. */
 static struct sea *open_aperture(double range_m, uint32_t window, double ray_scale)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, range_m);
@@ -22,8 +22,8 @@ static struct sea *open_aperture(double range_m, uint32_t window, double ray_sca
     return sea;
 }
 
-/* Visibility of every pixel behind an upright screen across the track's normal in the middle row,
- * its foot at a ground range. */
+/* Returns the visibility of every pixel behind an upright screen, which stands along the track in
+ * the middle row, with its foot at a ground range. */
 static const double *behind_screen(struct sea *sea, double width_m, double height_m,
                                    double ground_range_m)
 {
@@ -36,15 +36,15 @@ static const double *behind_screen(struct sea *sea, double width_m, double heigh
     return visibility_of(sea_image(sea));
 }
 
-/* Energy window of the aspects, over one period of the offset. */
+/* Returns the energy window of the aspects at an offset within one period. */
 static double window_energy(uint32_t window, double offset)
 {
     return window == SONJECT_WINDOW_HAMMING ? pow(0.54 + 0.46 * cos(2.0 * PI * offset), 2.0) : 1.0;
 }
 
-/* Visibility at x along the track behind a screen of `width` around 0, at a distance d behind it in
- * the plane across the track: the aspects whose way from there, x - d tan(aspect) at the screen, is
- * beside it. Lambert's law gives each aspect the square of its cosine. */
+/* Returns the visibility at x along the track behind a screen of `width` around 0, at a distance d
+ * behind it in the plane across the track. It is the share of aspects whose path passes beside the
+ * screen, at x - d tan(aspect). By Lambert's law each aspect has the square of its cosine. */
 static double expected_visibility(double x, double width, double d, uint32_t window)
 {
     const int steps = 4000;
@@ -59,8 +59,8 @@ static double expected_visibility(double x, double width, double d, uint32_t win
     return seen / all;
 }
 
-/* Distance, along the sound's way in the plane across the track, from the screen to a column's
- * seabed; and the first column at least that far behind. */
+/* Return the distance from the screen to a column's seabed, along the path in the plane across the
+ * track, and the first column at least that far behind the screen. */
 static double distance_behind(const struct sea *sea, size_t column, double screen_ground)
 {
     const double range = sea_range(sea, (double)column), ground = sea_ground(sea, range);
@@ -75,7 +75,7 @@ static size_t column_behind(const struct sea *sea, double screen_ground, double 
     return column;
 }
 
-/* Mean over nine columns, which the pulse joins anyway, in a row. */
+/* Returns the mean over nine columns of a row, which the pulse joins anyway. */
 static double visibility_at(const double *visibility, size_t row, size_t column)
 {
     double mean = 0.0;
@@ -86,16 +86,17 @@ static double visibility_at(const double *visibility, size_t row, size_t column)
 
 /* Visibility is linear across a penumbra d * wavelength / (2 resolution) wide at a distance d
  * behind the screen; a Hamming window's square narrows it. The line's own kinks, smoothed over a
- * few pixels, and 70 rays a point, stratified, leave less than 0.015; a penumbra of a tenth more
- * width would miss by 0.02 or more. Behind a screen of width w the core closes where the aspects
- * look around both of its ends, at 2 w resolution / wavelength; from there on the share 1 - that /
- * d of them is lit, and the shadow fades: the tangent's growth over the sine's and cos^2 are below
- * 0.02.
+ * few pixels, and 70 rays a point, stratified, leave less than 0.015. A penumbra a tenth wider
+ * would miss by 0.02 or more. Behind a screen of width w the core closes where the aspects look
+ * around both of its ends, at 2 w resolution / wavelength. At d beyond that, the share of lit
+ * aspects is 1 less that length over d, and the shadow fades. The tangent's growth over the sine's
+ * and cos^2 are below 0.02.
  *
- * At 0.6 of the shadow's length behind a screen of half a metre, at other ranges: a ramp of
- * visibility v from 0 to 1 has a width of six times the integral of v (1 - v): here both edges of a
- * screen that is wider than its penumbrae, in rows that hold nothing else. 560 rays a point leave a
- * rms below 0.01, which takes 6 x 10^-4 of the width; rows of 2.5 cm add less than 0.01. */
+ * Screens of half a metre are seen at other ranges, at 0.6 of the shadow's length behind them. A
+ * ramp of visibility v from 0 to 1 is six times the integral of v (1 - v) wide. Here the integral
+ * holds both edges of a screen wider than its penumbrae, in rows that hold nothing else. 560 rays a
+ * point leave an rms below 0.01, which takes 6 x 10^-4 off the width. Rows of 2.5 cm add less than
+ * 0.01. */
 CLAIM(shadows_are_those_of_the_aspects)
 {
     static const struct {
@@ -122,8 +123,8 @@ CLAIM(shadows_are_those_of_the_aspects)
         struct sea *sea = open_aperture(cases[i].range, cases[i].window, cases[i].rays);
         const double *visibility = behind_screen(sea, width, cases[i].height, ground);
         for (double at = cases[i].first; at <= cases[i].last; at += cases[i].step) {
-            /* the ray over a low screen's top: as long as the way to its foot, times height over
-             * what is left of the altitude */
+            /* length of a low screen's shadow along the ray: the way to the screen's foot times its
+             * height over the rest of the altitude */
             const size_t column = column_behind(
                 sea, ground, is_low ? 0.6 * cases[i].height / (10.0 - cases[i].height) * near : at);
             const double d = distance_behind(sea, column, ground);
@@ -144,8 +145,7 @@ CLAIM(shadows_are_those_of_the_aspects)
             else if (is_low)
                 expect_close("width of the penumbra over the geometry's",
                              0.5 * 6.0 * integral / (d * SLOPE), 1.0, 0.03);
-            if (width < 1.0 &&
-                is_low) { /* contrast falls as the shadow's length grows with range */
+            if (width < 1.0 && is_low) { /* contrast falls as the shadow grows with range */
                 assert_true(seen > faded);
                 faded = seen;
             }
@@ -153,8 +153,7 @@ CLAIM(shadows_are_those_of_the_aspects)
     }
 }
 
-/* Noise of one pixel's visibility with as many rays as users have by default, where it is largest:
- * in the middle of a penumbra. */
+/* The noise of a pixel's visibility with the default rays, largest in the middle of a penumbra. */
 CLAIM(noise_amid_a_penumbra)
 {
     struct sea *sea = open_aperture(RANGE, SONJECT_WINDOW_RECTANGULAR, 1.0);
@@ -173,13 +172,13 @@ CLAIM(noise_amid_a_penumbra)
             count++;
         }
     assert_true(count > 1000);
-    /* some 9 rays a pixel would leave 0.16 if they were not stratified; speckle's own standard
-     * deviation is 1 of the mean intensity */
+    /* some 9 rays a pixel would leave 0.16 without strata; the standard deviation of speckle is 1
+     * of the mean intensity */
     expect_below("rms noise of visibility", sqrt(square / (double)count), 0.1);
 }
 
-/* Lambert's law at an aspect has its cosine squared: 1 - sine^2/3 on the mean of all, of a squared
- * Hamming window its own mean of sine^2; 10^6 rays of stratified weights. */
+/* Lambert's law at an aspect has the square of the aspect's cosine, 1 - sine^2/3 on the mean of
+ * all. A squared Hamming window has its own mean of sine^2. 10^6 rays have stratified weights. */
 CLAIM(the_seabeds_level_over_aspects)
 {
     double sums[2], weights = 0.0, squares = 0.0;
@@ -197,9 +196,8 @@ CLAIM(the_seabeds_level_over_aspects)
                  decibels_of_energy(1.0 - squares / weights), 0.002);
 }
 
-/* A rough sphere of 1 cm keeps to its own strip at every height, and has the energy that it has
- * from broadside: only rays that meet it count, wherever they come from, beyond the patch's ends
- * too. */
+/* A rough sphere of 1 cm stays in its own strip at every height and has the energy that it has from
+ * broadside. All rays that meet the sphere count, also from beyond the patch's ends. */
 CLAIM(a_highlight_stays_where_it_is)
 {
     static const double heights[] = {0.0, 1.5};
@@ -221,14 +219,14 @@ CLAIM(a_highlight_stays_where_it_is)
                             sum_of(tile.energy + strip * tile.bins, (size_t)tile.bins) == 0.0);
         }
         print_message("%.1f m over the seabed: ", heights[i]);
-        /* some 160 strata of elevation, whose rays meet the sphere at chance along the track, with
-         * 0.6 on the mean: 0.065 each, four standard errors of their ratio */
+        /* in some 160 strata of elevation 0.6 rays each meet the sphere on the mean, by chance
+         * along the track: errors of 0.065 each, and four standard errors of the ratio */
         expect_close("energy over that from broadside", sums[1].energy / sums[0].energy, 1.0, 0.37);
     }
 }
 
-/* A steep mound, a quarter of a metre high: rays meet it well before the mean seabed, in
- * other strips than their own, and the image must show it where it is. */
+/* Rays meet a steep mound, a quarter of a metre high, well before the mean seabed and in other
+ * strips than their own. The image must show the mound at its true place. */
 CLAIM(relief_stays_where_it_is)
 {
     double lines[2][ROWS], difference = 0.0, brightness = 0.0;
@@ -237,7 +235,7 @@ CLAIM(relief_stays_where_it_is)
         sea->sonar->aperture_rad = is_on ? -1.0 : 0.0;
         sea_add_mound(sea, 0.25, 0.25, 0.0);
         sea_ready(sea);
-        /* the side towards the sonar, bright, without the shadow behind */
+        /* the bright side towards the sonar, without the shadow behind */
         const float *energy = sea_image(sea)->seabed_energy;
         for (size_t row = 0; row < ROWS; row++)
             lines[is_on][row] = sum_of(energy + row * COLUMNS + 150, 198 - 150);
@@ -246,7 +244,7 @@ CLAIM(relief_stays_where_it_is)
         difference += fabs(lines[1][row] - lines[0][row]);
         brightness += fabs(lines[0][row] - lines[0][0]);
     }
-    /* aspects light its flanks a little otherwise: 0.07; tallied in the rays' own strips, up to
-     * 17 cm to each side, it would differ by 0.22 */
+    /* aspects light the flanks a little differently: 0.07. Echoes in the rays' own strips, up to 17
+     * cm to each side, would differ by 0.22 */
     expect_below("difference over the mound's own brightness", difference / brightness, 0.1);
 }

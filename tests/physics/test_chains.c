@@ -1,5 +1,5 @@
-/* Paths of several interactions: against references that share nothing with the kernels but the
- * physics, against closed forms, and ways of finding the same paths against one another. */
+/* Paths of several interactions, compared with references that share nothing with the kernels but
+ * the physics, with closed forms, and between different ways of finding the same paths. */
 #include "reference_paths.h"
 
 #define ORDERS     3
@@ -10,15 +10,15 @@
 #define FAR_M      400.0
 #define NEAR_M     20.0
 
-/* So many ranges, 6 m in all, about the middle of a patch. */
+/* Returns `count` ranges, 6 m in all, about the middle of a patch. */
 static struct ranges ranges_about(double middle, int count)
 {
     const struct ranges ranges = {count, middle - 3.0, 6.0 / count};
     return ranges;
 }
 
-/* One object. Surfaces are so bright that the third order is heard. 24 seeds of few rays know their
- * standard errors better. */
+/* Opens a sea with one object. Surfaces are so bright that the third order is heard. Rays are few,
+ * since 24 seeds of few rays know their standard errors better. */
 static struct sea *open_with(enum shape_kind shape, double length_m, double diameter_m)
 {
     struct sea *sea = sea_open(160, 240, MIDDLE_M);
@@ -33,9 +33,9 @@ static struct sea *open_with(enum shape_kind shape, double length_m, double diam
     return sea;
 }
 
-/* Figure 7's geometry; over relief: ripples with shadows of their own, and scour about the target.
- * Rays over relief take five times as long; fewer know the energies better than brute force does.
- */
+/* Opens Figure 7's geometry. The relief has ripples with shadows of their own and scour about the
+ * target. Its rays take five times as long, so they are fewer. They still know the energies better
+ * than brute force does. */
 static struct sea *open_capsule(bool has_relief)
 {
     struct sea *sea = open_with(SHAPE_CAPSULE, 2.3, 0.3);
@@ -48,8 +48,8 @@ static struct sea *open_capsule(bool has_relief)
     return sea;
 }
 
-/* An object that is all within one sphere, which seabed under its overhang is within too: from
- * there no cone leads to a target. Near by and in a wide patch, for brute force's sake. */
+/* Opens an object within one bounding sphere, which also holds the seabed under the overhang. No
+ * cone leads from there to a target. Range and patch suit brute force: near and wide. */
 static struct sea *open_overhang(enum shape_kind shape, double diameter_m)
 {
     struct sea *sea = open_with(shape, 0.0, diameter_m);
@@ -59,7 +59,7 @@ static struct sea *open_overhang(enum shape_kind shape, double diameter_m)
     return sea;
 }
 
-/* Few ranges need few rays. */
+/* Traces chains into few ranges, which need few rays. */
 static struct energies trace_seeds(struct sea *sea, double middle, uint64_t first_seed)
 {
     const struct ranges ranges = ranges_about(middle, FEW_RANGES);
@@ -71,9 +71,9 @@ static struct estimate sum_of_two(struct estimate a, struct estimate b)
     return (struct estimate){a.mean + b.mean, hypot(a.error, b.error)};
 }
 
-/* Within four standard errors, range by range where there is energy that is known to 20 %, and the
- * sum of these ranges. Where there is less than a tenth of the most, brute force may find nothing
- * at all, and far beyond the target what lies outside the patch counts. */
+/* Compares energies within four standard errors, in each range where the energy is known to 20 %
+ * and in the sum of these ranges. Ranges with less than a tenth of the most are left out: brute
+ * force may find nothing there, and far beyond the target seabed outside the patch counts. */
 static void expect_same(const char *what, const struct energies *a, const struct energies *b,
                         double systematic)
 {
@@ -102,8 +102,8 @@ static void expect_same(const char *what, const struct energies *a, const struct
     }
 }
 
-/* The paper's brute force, with so many times the rays, and connections to random points of the
- * same rectangle. */
+/* Compares the paper's brute force, with `counted_rays` times the usual rays, with connections to
+ * random points of the same rectangle. */
 static void compare_estimators(const char *what, struct sea *sea, double middle,
                                double counted_rays)
 {
@@ -116,7 +116,7 @@ static void compare_estimators(const char *what, struct sea *sea, double middle,
     expect_same(what, &counted, &connected, 0.0);
 }
 
-/* Over relief: visibility, normals, and directions towards the target. */
+/* The relief tests visibility, normals, and directions towards the target. */
 CLAIM(brute_force_finds_what_connections_find)
 {
     compare_estimators("brute force", open_capsule(false), MIDDLE_M, 1.0);
@@ -125,12 +125,12 @@ CLAIM(brute_force_finds_what_connections_find)
     sea_object(sea, 0)->height_m = 0.4;
     compare_estimators("under a torus", sea, NEAR_M, 0.7);
     sea = open_overhang(SHAPE_MESH, 0.0);
-    sea_object(sea, 0)->pitch_rad = PI; /* on its tip */
+    sea_object(sea, 0)->pitch_rad = PI; /* standing on its tip */
     sea_add_tetrahedron(sea);
     compare_estimators("under a mesh", sea, NEAR_M, 0.7);
 }
 
-/* What mirrors alone send into the source's rectangle is a glint, and none of the energies. */
+/* Sound that mirrors alone send into the source's rectangle is a glint and counts in no energy. */
 CLAIM(brute_force_leaves_glints_out)
 {
     const struct ranges ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
@@ -147,10 +147,10 @@ CLAIM(brute_force_leaves_glints_out)
         assert_true((&counted.sum[0][0])[i] == 0.0);
 }
 
-/* In focused columns paths between seabed and target are looked for from the seabed alone and stand
- * for both ways. A source of a millimetre beside the receiver has both found on their own, each
- * from where its first hit lies; at this range that changes the angles by less than a degree and
- * the energies by less than 3 %. Rays are few: errors are then as large as what is systematic. */
+/* In focused columns paths between seabed and target are searched from the seabed alone and stand
+ * for both ways. With a source of a millimetre beside the receiver both are found on their own,
+ * each seen from broadside of its first hit. At this range that changes the angles by less than a
+ * degree and the energies by less than 3 %. Rays are few: errors are as large as this. */
 CLAIM(one_way_stands_for_both)
 {
     for (int has_relief = 0; has_relief < 2; has_relief++) {
@@ -168,11 +168,11 @@ CLAIM(one_way_stands_for_both)
 
 /* ---- against the reference ---- */
 
-/* Of Figure 7's capsule, however weak the surfaces are: sound goes to and fro between them, so that
- * each path's share of the reference goes by what it meets; and of a drum on its side, all within
- * one sphere, which seabed under its overhang is within too. Weak surfaces show by fewer seeds that
- * shares scale. Paths begin on seabed from well before the patch to its end. A bin of 3 mm, shared
- * at either end of a range, is systematic. */
+/* The orders of Figure 7's capsule have the reference's energy, however weak the surfaces are.
+ * Sound goes to and fro between them, so each path of the reference is scaled by the surfaces that
+ * it meets. A drum on its side lies within one sphere, which also holds the seabed under its
+ * overhang. Weak surfaces have fewer seeds, enough to show that shares scale. Paths begin on seabed
+ * from well before the patch to its end. A bin of 3 mm, shared at a range's ends, is systematic. */
 CLAIM(orders_have_the_references_energy)
 {
     static struct reference_energy energy;
@@ -218,9 +218,9 @@ CLAIM(orders_have_the_references_energy)
     }
 }
 
-/* An object seen by way of the seabed's mirror belongs to the pairs of sources. Chains, which could
- * find it too, must not count it again: over a mirror without a rough part they have nothing else
- * to find. */
+/* Echoes of an object by way of the seabed's mirror belong to the pairs of sources. Chains could
+ * find them, too, but must not count them again. Over a mirror without a rough part chains have
+ * nothing else to find. */
 CLAIM(a_mirrored_object_is_left_to_image_pairs)
 {
     const struct ranges ranges = ranges_about(MIDDLE_M, CHAIN_RANGES);
@@ -231,15 +231,14 @@ CLAIM(a_mirrored_object_is_left_to_image_pairs)
     sea->seabed->forward.lambert = 0.0;
     const struct energies energies = sea_chains(sea, &ranges, 1, 1);
     assert_true(sea->bench->tracer.counts.queries >
-                sea->bench->tracer.counts.rays + 1000); /* ways to the source were asked for */
+                sea->bench->tracer.counts.rays + 1000); /* connections to the source were tested */
     for (int range = 0; range < CHAIN_RANGES; range++)
         assert_true(energies.sum[1][range] == 0.0);
 }
 
-/* The narrowest cones are 2500 times as bright as Lambert's law; tallies must hold them: a sphere
- * echoes a quarter of its radius' square at once, and other paths add to that. A tilted plate
- * mirrors past the sonar. Half the seeds, since eight interactions take long, know the sum to
- * 15 %. */
+/* The narrowest cones are 2500 times as bright as Lambert's law, and tallies must hold them. A
+ * sphere alone echoes a quarter of its radius' square, and other paths add to that. A tilted plate
+ * mirrors past the sonar. Eight interactions take long. Half the seeds know the sum to 15 %. */
 CLAIM(the_narrowest_cone_is_in_scale)
 {
     static const double slopes[] = {0.01, 0.03};
@@ -270,15 +269,16 @@ CLAIM(the_narrowest_cone_is_in_scale)
 /* ---- a glint that lights the seabed: double integral over the sphere ---- */
 
 struct lit {
-    double radius, height, lambert; /* sphere, its centre's height, the seabed's */
-    struct ranges ranges;           /* beyond the sphere's centre */
-    int steps;                      /* of the integral, each way */
+    double radius, height, lambert; /* of the sphere, of its centre, of the seabed */
+    struct ranges ranges;           /* counted from the sphere's centre */
+    int steps;                      /* of the integral, in each direction */
 };
 static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
 
-/* One bundle of rays: wavefront dx by r dphi at the sphere; its energy over the square of the range
- * goes by the mirror to the seabed, which sends mu cos(angle) / r^2 of it to the sonar: broadside
- * of the sphere's hit, or (focused columns) of the middle between both hits. */
+/* Adds one bundle of rays, of the wavefront dx by r dphi at the sphere. The sphere mirrors its
+ * energy, over the square of the range, to the seabed, which sends mu cos(angle) / r^2 of it to the
+ * sonar. The sonar is broadside of the sphere's hit, in focused columns of the middle of both
+ * hits. */
 static void add_bundle(const struct sea *sea, const struct reference_scene *scene, double x,
                        double elevation, double width, struct estimate *energies)
 {
@@ -309,9 +309,9 @@ static void add_bundle(const struct sea *sea, const struct reference_scene *scen
                                 pow(square, 1.5) * pow(half_path, 4.0);
 }
 
-/* Sonar, smooth sphere, Lambert seabed, sonar, and the reverse. In paper columns the path is in its
- * first hit's column, the reverse in the seabed's; focused, both are one echo: twice the amplitude.
- * 1 %: bins at the edges of a range, and seabed beyond the ends of the track. */
+/* The path sonar, smooth sphere, Lambert seabed, sonar and its reverse. In paper columns the path
+ * is in its first hit's column, the reverse in the seabed's. In focused columns both are one echo
+ * of twice the amplitude. 1 % is for bins at a range's edges and seabed beyond the track's ends. */
 CLAIM(a_glint_lights_the_seabed)
 {
     for (int is_focused = 0; is_focused < 2; is_focused++) {
@@ -348,14 +348,14 @@ CLAIM(a_glint_lights_the_seabed)
 
 /* ---- a Lambert sphere well over the seabed ---- */
 
-#define OVER_M      52.0 /* of the patch's middle, and of the first range */
+#define OVER_M      52.0 /* range of the patch's middle, and the first that counts */
 #define HEIGHT_M    1.5
 #define RADIUS_M    0.4
-#define RINGS       150 /* of seabed, ever wider */
+#define RINGS       150 /* rings of seabed, ever wider */
 #define SECTORS     200
 #define PARALLEL    12 /* pieces of the sphere */
 #define MERIDIAN    24
-#define REFERENCE_M 200.0 /* the reference's depth: its seabed, black, is out of hearing */
+#define REFERENCE_M 200.0 /* the reference's depth; its black seabed is not heard */
 
 static const struct ranges behind = {2, OVER_M, 0.5};
 
@@ -371,8 +371,8 @@ static struct sea *open_over_seabed(uint32_t interactions)
     return sea;
 }
 
-/* Sonar, seabed at `bottom`, a piece of the sphere, sonar, which is broadside of the middle between
- * both. Together with the reverse it is in the image four times. */
+/* Adds the paths sonar, seabed at `bottom`, a piece of the sphere, sonar. The sonar is broadside of
+ * the middle between both hits. Together with its reverse a path is in the image four times. */
 static void add_pieces(const struct sea *sea, struct reference_vector centre,
                        struct reference_vector bottom, double area, struct estimate *expected)
 {
@@ -410,9 +410,9 @@ static void add_pieces(const struct sea *sea, struct reference_vector centre,
         }
 }
 
-/* Seabed far in front of the sphere: integral over all seabed, up to below the sonar, and over the
- * sphere. 1.5 %: of the detours up to the sphere's height, in the first two ranges, 0.5 % may be
- * left out; bins at the edges of a range. */
+/* Seabed far in front of the sphere is heard. The reference is an integral over the sphere and all
+ * seabed, up to below the sonar. 1.5 % allows for bins at the edges of a range and for what may be
+ * left out: 0.5 % of the detours up to the sphere's height, which are in the first two ranges. */
 CLAIM(far_seabed_is_heard)
 {
     struct estimate expected[2] = {{0.0, 0.0}, {0.0, 0.0}};
@@ -435,22 +435,22 @@ CLAIM(far_seabed_is_heard)
     expect_energies("far seabed", &measured, 1, expected, behind.count, 0.015, 0.02, behind.count);
 }
 
-/* How often a path of three interactions is in the image. */
+/* Returns how often a path of three interactions is in the image. */
 static double ways_of(int path)
 {
     int met[REFERENCE_ORDERS];
     if (reference_met(path, met) < 3 ||
         (met[0] != MET_TARGET && met[1] != MET_TARGET && met[2] != MET_TARGET) ||
         met[2] == MET_MIRROR)
-        return 0.0; /* what ends on the mirror is a reverse */
+        return 0.0; /* a path that ends on the mirror is a reverse */
     if (met[0] == met[2])
         return 2.0;
     return met[0] == MET_TARGET ? 0.0 : 4.0;
 }
 
-/* The seabed's mirror first, above all sonar, seabed's mirror, sphere, seabed, sonar: as a sphere
- * under the reference's sea surface, upside down, its seabed black. The mirror's point is 7.7 m in
- * front of the sphere, whose sound spreads 8 m more than it would from there. */
+/* Paths that begin at the seabed's mirror, above all sonar, seabed's mirror, sphere, seabed, sonar.
+ * The reference has them upside down, with a sphere under its sea surface and a black seabed. The
+ * mirror's point is 7.7 m in front of the sphere, so the sound spreads 8 m further. */
 CLAIM(sound_spreads_from_the_mirrored_sonar)
 {
     static struct reference_energy energy;
@@ -466,7 +466,7 @@ CLAIM(sound_spreads_from_the_mirrored_sonar)
     scene.body.centre.z = REFERENCE_M - scene.body.centre.z;
     scene.surface_lambert = scene.seabed_lambert;
     scene.seabed_lambert = 0.0;
-    /* the mirror has what the rough part leaves of it */
+    /* the mirror has the energy that the rough part leaves */
     scene.reflection = sqrt(1.0 - PI * sea->seabed->lambert) * 0.9;
     scene.phase = 0.0;
     scene.rough_is_apart = true;
@@ -488,10 +488,9 @@ CLAIM(sound_spreads_from_the_mirrored_sonar)
 
 /* ---- second order ---- */
 
-static float rays_counted; /* times as many as there are */
+static float rays_counted; /* times the rays that there are */
 
-/* Has rays from the target count for more or less than they are in their share of an echo; samples
- * have the rest. */
+/* Weighs the target's rays as if there were rays_counted times as many. Samples have the rest. */
 static void weigh_rays(struct bench *bench, struct chain_trace *trace)
 {
     struct report *report = &bench->report;
@@ -514,9 +513,9 @@ static struct energies weighed_seeds(struct sea *sea, float counted, uint64_t fi
     return sea_changed_chains(sea, &ranges, first_seed, SEEDS, weigh_rays);
 }
 
-/* Paths between target and seabed are sampled by the cells that their echoes end in, and found by
- * rays that the target scatters. Either alone finds all of them, and so do both with the shares
- * that are theirs. Samples alone vary without bound where target and seabed touch, so most targets
+/* Paths between target and seabed are sampled by the cells in which their echoes end, and are found
+ * by rays that the target scatters. Either way alone finds all of them, and so do both with their
+ * proper shares. Samples alone vary without bound where target and seabed touch, so most targets
  * hang over the seabed. */
 CLAIM(samples_and_rays_find_the_same_paths)
 {
@@ -530,7 +529,7 @@ CLAIM(samples_and_rays_find_the_same_paths)
         sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
         if (variant < 5)
             sea_object(sea, 0)->burial_m = -0.4;
-        if (variant == 4) /* of whose cells some samples are left out */
+        if (variant == 4) /* cells leave out some samples of so weak a target */
             make_rough(sea_object(sea, 0), 0.002);
         if (variant == 6) {
             sea_object(sea, 0)->diameter_m = 0.12;

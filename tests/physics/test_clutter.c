@@ -1,10 +1,10 @@
-/* Many objects at a time: each is what it is alone where no other is near, and sound between seabed
- * and many targets is what plain cosine sampling finds. */
+/* Many objects at a time. An object far from all others is as it is alone, and sound between seabed
+ * and many targets is as plain cosine sampling finds it. */
 #include "device/device.h"
 #include "sea.h"
 
 #define PIXELS   400
-#define SIDE     10 /* of a lattice of objects */
+#define SIDE     10 /* objects along a side of the lattice */
 #define MIDDLE_M 25.0
 
 static void add_object(struct sea *sea, double row, double column, double diameter)
@@ -15,7 +15,7 @@ static void add_object(struct sea *sea, double row, double column, double diamet
     object->material.reflection = 0.9;
 }
 
-/* Of a lattice; shadows, of 0.3 m at most, end before the next object. */
+/* Adds an object of a lattice. Shadows, of 0.3 m at most, end before the next object. */
 static void add_to_lattice(struct sea *sea, int number)
 {
     const double step = (double)PIXELS / (SIDE + 1);
@@ -23,10 +23,9 @@ static void add_to_lattice(struct sea *sea, int number)
                0.06 + 0.0005 * number);
 }
 
-/* Echo, footprint, shadow and glint of each of 100 objects have the bits that they have alone: rays
- * and their random numbers are the patch's, not the objects'. Those of glints depend on the
- * object's number: as the first of all a glint has the same bits, as another one the same energy.
- */
+/* Each of 100 objects has the same bits as alone in echo, footprint and shadow, since rays and
+ * their random numbers are the patch's. The random numbers of glints depend on the object's number.
+ * The first object's glint has the same bits, any other the same energy. */
 CLAIM(each_is_what_it_is_alone)
 {
     static struct strips all[SIDE * SIDE], one;
@@ -49,7 +48,7 @@ CLAIM(each_is_what_it_is_alone)
         assert_true(sum_of(one.energy, TILE_PLANES * cells) > 0.0);
         assert_memory_equal(one.energy, all[i].energy, TILE_PLANES * cells * sizeof(float));
         const struct line alone = sea_line(sea, 0);
-        /* 0.06 dB is what more rays may change of a glint (test_glints.c) */
+        /* more rays may change a glint by 0.06 dB (test_glints.c) */
         expect_close("glint among others over alone, dB",
                      decibels_of_energy(energy[i] / line_energy(&alone)), 0.0, 0.06);
         if (i % 45 > 0)
@@ -67,7 +66,7 @@ CLAIM(each_is_what_it_is_alone)
 #define SEEDS  16
 #define ORDERS 3
 
-/* Plain cosine sampling: nobody is led anywhere. */
+/* Makes sampling plain cosine sampling, which leads no ray to a target. */
 static void make_plain(struct bench *bench, struct chain_trace *trace)
 {
     struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[CHAIN_RECORD]);
@@ -82,9 +81,10 @@ static void make_plain(struct bench *bench, struct chain_trace *trace)
     free(chains);
 }
 
-/* Led from the seabed to one of 160 targets, or not led at all: the same energy, in the ranges that
- * plain sampling finds to 10 % and better. Strewn; and heaped, so that spheres overlap and hold the
- * seabed about them, below waves, to which sound is led from the seabed besides. */
+/* Sound that is led from the seabed to one of 160 targets has the energy of sound that is not led,
+ * in ranges that plain sampling knows to 10 % or better. Targets are strewn, or heaped so that
+ * their spheres overlap and hold the seabed about them. The heap lies below waves, to which sound
+ * from the seabed is led, too. */
 CLAIM(sound_led_to_many_targets_has_its_energy)
 {
     static const struct {
@@ -113,7 +113,7 @@ CLAIM(sound_led_to_many_targets_has_its_energy)
         }
         sea->seabed->lambert = 0.2;
         sea->surface->water_depth_m = seas[i].depth_m;
-        sea->surface->material.roughness_m = 0.1; /* no mirror is left */
+        sea->surface->material.roughness_m = 0.1; /* leaves no mirror */
         sea->surface->material.lambert = 0.3;
         sea->surface->material.glossy_albedo = 0.0;
         sea->injection->interactions = ORDERS;
@@ -144,7 +144,7 @@ CLAIM(sound_led_to_many_targets_has_its_energy)
     }
 }
 
-/* More shapes than random numbers are told apart for are refused with one line. */
+/* A scene is refused with one line if it has more shapes than random numbers can tell apart. */
 CLAIM(too_many_shapes_are_refused)
 {
     static const double nowhere[3] = {0.0, 0.0, 0.0};

@@ -1,5 +1,5 @@
-/* Measured and traced sound in one picture: what is kept, what is added, with which response,
- * looks, saturation and level, and how a whole patch comes out when it is traced anew. */
+/* Measured and traced sound in one image: the pixels that stay, the energy that is added, its
+ * response, looks, saturation and level, and patches that are resynthesised. */
 #include "inject/compose.h"
 #include "sea.h"
 
@@ -9,7 +9,7 @@
 #define SPACING 0.025
 #define SEEDS   12
 
-/* A measured patch: a speckle field with the sonar's point response, unit mean square. */
+/* Returns a measured patch: a speckle field of unit mean square with the sonar's point response. */
 static double complex *measured_field(struct sea *sea, uint64_t seed)
 {
     const uint64_t own_seed = sea->injection->seed;
@@ -27,7 +27,7 @@ static double pixel_energy(const struct injected *result, bool is_complex, size_
                       : (double)p[i] * p[i];
 }
 
-/* A black plate over the seabed. */
+/* Adds a black plate over the seabed. */
 static void add_plate(struct sea *sea, double length, double width)
 {
     sonject_object_params *plate = sea_add(sea, SHAPE_PLANE, length, width, 0.0);
@@ -35,14 +35,14 @@ static void add_plate(struct sea *sea, double length, double width)
     plate->burial_m = -0.5;
 }
 
-/* The noise is the one that is asked for. */
+/* Asks for a noise floor instead of an estimated one. */
 static void set_noise(struct sea *sea, double floor_db)
 {
     sea->injection->estimate_noise = 0;
     sea->injection->noise_floor_db = floor_db;
 }
 
-/* Outside the influence every bit is the input's; inside, V is a fraction. */
+/* Outside the influence every bit is the input's. Inside, V is a fraction. */
 CLAIM(untouched_pixels_keep_every_bit)
 {
     for (int is_complex = 0; is_complex < 2; is_complex++) {
@@ -74,8 +74,8 @@ CLAIM(untouched_pixels_keep_every_bit)
     }
 }
 
-/* In the deep shadow of something that returns nothing there is the noise that was asked for, on
- * highlights the energy that was expected, each pixel over its own: means over a few seeds. */
+/* The deep shadow of a black object holds the noise that was asked for. Highlights have the
+ * expected energy, each pixel over its own. Both are means over a few seeds. */
 CLAIM(shadows_and_highlights_have_their_energy)
 {
     for (int is_complex = 0; is_complex < 2; is_complex++) {
@@ -122,9 +122,9 @@ CLAIM(shadows_and_highlights_have_their_energy)
     }
 }
 
-/* Where half of the seabed's energy arrives, half of it is in the picture: the mean of
- * |out|^2 / |in|^2 weighted by |in|^2 is V + (1 - V) noise. A lattice of narrow slats: V between 0
- * and 1 in all of its shadow. */
+/* A share V of the seabed's energy that arrives is in the image: the mean of |out|^2 / |in|^2
+ * weighted by |in|^2 is V + (1 - V) noise. A lattice of narrow slats has V between 0 and 1 in all
+ * of its shadow. */
 CLAIM(a_partial_shadow_keeps_its_share)
 {
     struct sea *sea = sea_open(SIDE, SIDE, RANGE);
@@ -147,16 +147,16 @@ CLAIM(a_partial_shadow_keeps_its_share)
         partial += result->visibility[i] > 0.1f && result->visibility[i] < 0.9f;
     }
     assert_true(partial > 300);
-    /* the noise's share: 60 dB down, and its interference with the seabed */
+    /* the tolerance is for the noise, 60 dB down, and its interference with the seabed */
     expect_close("energy over V of the input's", out / expected, 1.0, 2e-3);
 }
 
 /* ---- two interactions ---- */
 
-/* Measured pixels that two interactions change beyond what one does about Figure 7's capsule,
- * broadside, and by how much: the change's mean square over what is expected of it. A path of two
- * legs over the seabed and the target is never shorter than there and back to the farther of both,
- * so none is seen before the target, but for the pulse: six deviations leave exp(-18). */
+/* A second interaction changes measured pixels about Figure 7's capsule, broadside, by the expected
+ * energy: the change's mean square is compared with it. A path over seabed and target is never
+ * shorter than there and back to the farther of both. So no pixel changes before the target, but
+ * for the pulse: six deviations leave exp(-18). */
 CLAIM(the_change_is_that_of_the_second_interaction)
 {
     double ratios[SEEDS];
@@ -188,7 +188,7 @@ CLAIM(the_change_is_that_of_the_second_interaction)
         double change = 0.0, expected = 0.0;
         size_t kept = 0, shaded = 0;
         for (size_t column = 0; column < columns; column++) {
-            double plain = 0.0; /* seabed's own energy in a pixel, where nothing else is */
+            double plain = 0.0; /* the seabed's energy in a pixel, from rows of seabed alone */
             for (size_t row = 0; row < rows / 8; row++)
                 plain += result[0]->energy[row * columns + column] / ((double)rows / 8.0);
             for (size_t i = column; i < rows * columns; i += columns) {
@@ -213,12 +213,12 @@ CLAIM(the_change_is_that_of_the_second_interaction)
     expect_estimate("change over what is expected", estimate_of(ratios, SEEDS), 1.0, 0.0);
 }
 
-/* ---- traced anew ---- */
+/* ---- resynthesised ---- */
 
 enum patch_kind {
     PATCH_UNIFORM, /* amplitude 1 */
     PATCH_WHITE,   /* exponential intensities, pixel by pixel */
-    PATCH_MEASURED /* a speckle field of the sonar's */
+    PATCH_MEASURED /* a speckle field of the sonar */
 };
 
 static float *make_patch(struct sea *sea, enum patch_kind kind, uint64_t seed)
@@ -231,7 +231,7 @@ static float *make_patch(struct sea *sea, enum patch_kind kind, uint64_t seed)
     return pixels;
 }
 
-/* Share of a pixel's seabed energy that comes from `column` columns beside: G^2 over that pixel. */
+/* Returns the share of a pixel's seabed energy from `column` columns beside: G^2 over the pixel. */
 static double column_share(double resolution, int column)
 {
     const double deviation = resolution / (2.0 * sqrt(log(2.0))) / sqrt(2.0) / 0.025;
@@ -239,10 +239,11 @@ static double column_share(double resolution, int column)
                   erf((column - 0.5) / deviation / sqrt(2.0)));
 }
 
-/* Contrast of new speckle on a map: intensity = (map smoothed by |W|^2 G^2) times an exponential
- * deviate, so contrast^2 = 1 + 2 v with v the smoothed map's variance. With rows as wide as the
- * resolution, |W|^2 takes its own row alone. v is the sum over pairs of shares of the map's
- * correlation: white, or exp(-(lag/s)^2/2) for measured speckle. Unsmoothed v = 1: sqrt(3). */
+/* Returns the contrast of new speckle on a map. The intensity is the map, smoothed by |W|^2 G^2,
+ * times an exponential deviate, so contrast^2 = 1 + 2 v with v the smoothed map's variance. With
+ * rows as wide as the resolution, |W|^2 takes its own row alone. v is the sum, over pairs of
+ * shares, of the map's correlation: white, or exp(-(lag/s)^2/2) for measured speckle. An unsmoothed
+ * map has v = 1 and sqrt(3). */
 static double expected_contrast(enum patch_kind kind, double resolution)
 {
     const double deviation = resolution / (2.0 * sqrt(log(2.0))) / 0.025;
@@ -257,10 +258,11 @@ static double expected_contrast(enum patch_kind kind, double resolution)
     return kind == PATCH_UNIFORM ? 1.0 : sqrt(1.0 + 2.0 * variance);
 }
 
-/* Errors from the number of independent pixels, at least 50,000 in 4 patches of 102,400 with
- * intensities correlated over 1.5 to 3 of them (four values give a poor scatter): 0.5 % of level
- * and 1 % of contrast, whose own variance grows with it. A white map at half a pixel's resolution
- * leaves nearly sqrt(3); a despeckled one, a mean over 2 pi 2 4^2 pixels, 1/200 of its variance. */
+/* Four values give a poor scatter, so errors come from the number of independent pixels. It is at
+ * least 50,000 in 4 patches of 102,400, with intensities correlated over 1.5 to 3 pixels. Errors
+ * are 0.5 % of the level and 1 % of the contrast, whose variance grows with the contrast. A white
+ * map at half a pixel's resolution leaves nearly sqrt(3). A despeckled map, a mean over 2 pi 2 4^2
+ * pixels, leaves 1/200 of its variance. */
 CLAIM(a_map_traced_anew_keeps_level_and_contrast)
 {
     static const struct {
@@ -300,14 +302,14 @@ CLAIM(a_map_traced_anew_keeps_level_and_contrast)
     }
 }
 
-/* A complex patch used as reflectivity comes back as itself, seen through the sonar once more:
- * level kept, and of the field's correlation what a second Gaussian leaves in range, sqrt(2
- * sqrt(2)/3) = 0.971 (along-track the sinc is its own square), squared for intensities.
- * Interpolating between columns as wide as the resolution costs a little of it. */
+/* A complex patch used as reflectivity comes back as itself, seen through the sonar once more. The
+ * level stays. The fields' correlation is the one that a second Gaussian leaves in range, sqrt(2
+ * sqrt(2)/3) = 0.971 (along-track the sinc is its own square), and its square for intensities.
+ * Interpolating between columns as wide as the resolution costs a little correlation. */
 CLAIM(a_coherent_map_comes_back_as_itself)
 {
     static const struct {
-        double row, column, resolution; /* m; range resolution is 2.5 cm */
+        double row, column, resolution; /* m; the range resolution is 2.5 cm */
     } grids[] = {
         {0.025, 0.025, 0.025}, {0.025, 0.0125, 0.05}, {0.025, 0.0125, 0.0125}, {0.02, 0.02, 0.03}};
     for (size_t i = 0; i < COUNT(grids); i++) {
@@ -337,9 +339,9 @@ CLAIM(a_coherent_map_comes_back_as_itself)
 
 /* ---- matched to the image ---- */
 
-#define DEEP 5e-3f /* visibility in the deep shadow */
+#define DEEP 5e-3f /* largest visibility in the deep shadow */
 
-/* Amplitudes of a speckle field: a mean over looks, formed with a resolution along track. */
+/* Returns amplitudes of a speckle field: a mean over looks, of an along-track resolution. */
 static float *measured_amplitudes(struct sea *sea, int looks, double resolution_m)
 {
     float *amplitude = claim_memory(PIXELS, sizeof *amplitude);
@@ -355,10 +357,10 @@ static float *measured_amplitudes(struct sea *sea, int looks, double resolution_
     return amplitude;
 }
 
-/* Speckle in the shadow, of some 9000 pixels, is the image's: of one look or three, as coarse as
- * there: contrast of the amplitudes, correlation of intensities from row to row. The shadow has
- * some count / (2.5 pixels of speckle) independent values, which know contrast to 0.6 / root and
- * correlation to 1.5 / root; the image's own widths are known to 5 %, its looks to 6 % and -2 %. */
+/* Speckle in the shadow, of some 9000 pixels, is the image's, of one look or three and as coarse:
+ * contrast of the amplitudes, correlation of intensities from row to row. The shadow has some count
+ * / (2.5 pixels of speckle) independent values, which know contrast to 0.6 / root and correlation
+ * to 1.5 / root. The image's own widths are known to 5 %, its looks to 6 % and -2 %. */
 CLAIM(speckle_in_shadows_is_the_images)
 {
     static const double amplitude_contrast[] = {0.0, 0.5227, 0.0, 0.2940};
@@ -397,8 +399,7 @@ CLAIM(speckle_in_shadows_is_the_images)
     }
 }
 
-/* An image of the sonar's own response is left to it, to the bit; so is what is told to be nominal.
- */
+/* An image of the sonar's own response keeps it to the bit. One told to be nominal does, too. */
 CLAIM(a_nominal_response_is_left_alone)
 {
     for (int is_told = 0; is_told < 2; is_told++) {
@@ -417,7 +418,7 @@ CLAIM(a_nominal_response_is_left_alone)
     }
 }
 
-/* Highlights end where the image's do, or with full_scale go on. */
+/* Highlights saturate at the image's largest value, or with full_scale go beyond it. */
 CLAIM(highlights_saturate_where_the_image_does)
 {
     for (uint32_t is_cut = 0; is_cut < 2; is_cut++) {
@@ -427,7 +428,7 @@ CLAIM(highlights_saturate_where_the_image_does)
         sea_add_sphere(sea, 0.3, 0.0);
         float *pixels = measured_amplitudes(sea, 1, SPACING);
         for (size_t i = 0; i < PIXELS; i++)
-            pixels[i] = fminf(pixels[i], 2.0f); /* two in a hundred pixels */
+            pixels[i] = fminf(pixels[i], 2.0f); /* cuts two in a hundred pixels */
         const struct injected *result = sea_inject(sea, pixels, false);
         for (size_t i = 0; i < PIXELS; i++)
             largest = fmaxf(largest, result->image[i]);
@@ -435,7 +436,7 @@ CLAIM(highlights_saturate_where_the_image_does)
     }
 }
 
-/* The largest energy of some rows, dB. */
+/* Returns the largest energy of some rows, dB. */
 static double peak_of(const struct injected *result, size_t first_row, size_t end_row)
 {
     double peak = 0.0;
@@ -444,7 +445,7 @@ static double peak_of(const struct injected *result, size_t first_row, size_t en
     return decibels_of_energy(peak);
 }
 
-/* Two spheres, one scaled to a target strength, one over the seabed; a third is left alone. */
+/* One sphere is scaled to a target strength, one to a level over the seabed, a third is not. */
 CLAIM(levels_are_those_asked_for)
 {
     struct sea *sea = sea_open(SIDE, SIDE, RANGE);
@@ -470,7 +471,7 @@ CLAIM(levels_are_those_asked_for)
         expect_close("target strength moves with the gain", truth->target_strength_db,
                      was->target_strength_db + truth->level_gain_db, 1e-4);
         assert_int_equal(truth->level_kind, sea_object(sea, i)->level_kind);
-        /* what is left of the seabed adds a hundredth at 18 dB over it */
+        /* the seabed that is left adds a hundredth at 18 dB over it */
         expect_close("energy layer",
                      peak_of(after, first, first + 80) - peak_of(before, first, first + 80),
                      truth->level_gain_db, 0.1);
@@ -479,7 +480,7 @@ CLAIM(levels_are_those_asked_for)
     assert_true(before->objects[0].level_gain_db == 0.0);
 }
 
-/* Weights of looks: sum 1, sum of squares 1 / looks, none negative. */
+/* The looks' weights have the sum 1 and the sum of squares 1 / looks. None is negative. */
 CLAIM(weights_of_looks_make_up_one)
 {
     for (double looks = 1.0; looks <= 64.0; looks += 0.37) {
@@ -495,10 +496,10 @@ CLAIM(weights_of_looks_make_up_one)
 
 #define FIRST_ROWS    48
 #define FIRST_COLUMNS 241
-#define FIRST_RANGE   10.6 /* of the middle: from 7.6 m to 13.6 m, 10 m over the seabed */
+#define FIRST_RANGE   10.6 /* of the middle: 7.6 m to 13.6 m, from 10 m over the seabed */
 
-/* A dark water column and an even seabed: the seabed's level is its own up to the first return, and
- * a patch that is traced anew keeps the column's pixels. */
+/* Beside a dark water column an even seabed has its own level up to the first return. A patch that
+ * is resynthesised keeps the column's pixels. */
 CLAIM(the_water_column_keeps_its_pixels)
 {
     const size_t water = 97; /* 7.6 m + 96 * 2.5 cm is 10 m */
@@ -532,7 +533,8 @@ static sonject_status set_up(struct sea *sea)
     return status;
 }
 
-/* Nothing but water; layers, whose rays would start straight down; a target before the bottom. */
+/* A patch is refused if it holds nothing but water, has layers, whose rays would start straight
+ * down, or has a target before the bottom. */
 CLAIM(what_lies_before_the_bottom_is_refused)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.0}, {3.0, 1530.0, 1.0}};

@@ -1,4 +1,4 @@
-/* The ruler for contacts recovers the geometry of injected ones: in random poses, on a seabed of
+/* Measures of contacts recover the geometry of injected objects: in random poses, on a seabed of
  * speckle, through the public interface. */
 #include "sea.h"
 
@@ -8,24 +8,24 @@
 #define FIRST    38.0 /* slant range of column 0, m */
 #define ALTITUDE 10.0
 #define POSES    100
-#define SOLIDS   10 /* of each thick kind */
+#define SOLIDS   10 /* poses of each thick kind */
 #ifndef SEED
-#define SEED 20240611 /* of the poses and of the seabeds' speckle */
+#define SEED 20240611 /* for the poses and the seabeds' speckle */
 #endif
-#define SIDES          32 /* of what stands for a circle: 0.5 % less wide */
+#define SIDES          32 /* of the polygon for a circle, 0.5 % narrower */
 #define CORNERS        (2 * SIDES)
 #define EDGES          (3 * SIDES)
-#define CONTRAST_ERROR 0.4 /* dB, as sonject/measure.h says */
+#define CONTRAST_ERROR 0.4 /* dB, from sonject/measure.h */
 #define LINES          33  /* across the middle third of the rows */
 
-/* A convex body as it is drawn: all that is random. */
+/* A convex body in a random pose. */
 struct pose {
     sonject_object_params object;
     double corners[CORNERS][3]; /* x along the track, y ground range, z height */
     int corner_count;
     int edges[EDGES][2];
     int edge_count;
-    bool has_dark_top; /* so that the shadow begins before it */
+    bool has_dark_top; /* the shadow begins before the top */
 };
 
 static uint64_t random_state;
@@ -35,8 +35,8 @@ static double draw(double low, double high)
     return low + (high - low) * (double)(next_random(&random_state) >> 11) * 0x1p-53;
 }
 
-/* Puts corners, given along the body's own axes, where the pose puts them: the lowest one so deep
- * in the seabed, above a point of it. */
+/* Moves corners from the body's own axes to the pose: above its place on the seabed, with the
+ * lowest corner at its burial. */
 static void place_corners(struct pose *pose)
 {
     const sonject_object_params *object = &pose->object;
@@ -70,8 +70,8 @@ static void add_edge(struct pose *pose, int from, int to)
     pose->edges[pose->edge_count++][1] = to;
 }
 
-/* A prism, or the stump of a pyramid: rings of corners around an axis of the body, at both of its
- * ends. first_angle: of the first corner; aspect: of the ring's second direction over the first. */
+/* Makes a prism or a truncated pyramid: rings of corners around an axis of the body, at both ends.
+ * first_angle: of the first corner; aspect: ratio of the ring's second direction to the first. */
 static void make_prism(struct pose *pose, int sides, int axis, double length, const double radii[2],
                        double first_angle, double aspect)
 {
@@ -114,8 +114,8 @@ static void draw_place(struct pose *pose)
     object->level_db = 15.0;
 }
 
-/* Thin, so that nothing but what faces the sonar is seen, and nearly level, since the tip of a
- * raised end is fainter than the seabed. */
+/* Draws a slab so thin that only the side facing the sonar is seen. It is nearly level, since the
+ * tip of a raised end is fainter than the seabed. */
 static void draw_slab(struct pose *pose)
 {
     sonject_object_params *object = &pose->object;
@@ -129,7 +129,7 @@ static void draw_slab(struct pose *pose)
     make_box(pose);
 }
 
-/* Smooth: its level top returns nothing, and is as dark as the shadow. */
+/* Draws a smooth box. Its level top returns nothing and is as dark as the shadow. */
 static void draw_smooth_box(struct pose *pose)
 {
     sonject_object_params *object = &pose->object;
@@ -142,7 +142,7 @@ static void draw_smooth_box(struct pose *pose)
     make_box(pose);
 }
 
-/* Its level top is a few dB darker than the seabed: it is no highlight, and no shadow. */
+/* Draws a rough box. Its level top, a few dB darker than the seabed, is no highlight, no shadow. */
 static void draw_box(struct pose *pose)
 {
     draw_smooth_box(pose);
@@ -163,7 +163,7 @@ static void draw_truncated_cone(struct pose *pose)
     make_prism(pose, SIDES, 2, object->height_m, radii, 0.0, 1.0);
 }
 
-/* Where the line between two points passes a height or a track position; false: nowhere. */
+/* Finds where the line between two points passes a height or a track position. False: nowhere. */
 static bool cross(const double a[3], const double b[3], int axis, double value, double point[3])
 {
     if ((a[axis] < value) == (b[axis] < value))
@@ -174,7 +174,7 @@ static bool cross(const double a[3], const double b[3], int axis, double value, 
     return true;
 }
 
-/* Along-track ends of what stands above the seabed. */
+/* Gives the along-track ends of the part above the seabed. */
 static void ends_along_track(const struct pose *pose, double *low, double *high)
 {
     *low = INFINITY;
@@ -195,7 +195,7 @@ static void ends_along_track(const struct pose *pose, double *low, double *high)
     }
 }
 
-/* The corners of the section at a track position. */
+/* Gives the corners of the section at a track position. Returns their number. */
 static int section(const struct pose *pose, double x, double points[][3])
 {
     int count = 0;
@@ -205,13 +205,13 @@ static int section(const struct pose *pose, double x, double points[][3])
     return count;
 }
 
-/* Slant range between the end of what is lit of the section, or the seabed before it, and the end
- * of its shadow. */
+/* Returns the slant range from the end of the section's lit part, or of the seabed before it, to
+ * the end of the shadow, m. */
 static double shadow_length(const struct pose *pose, double x)
 {
     double points[EDGES][3];
     const int count = section(pose, x, points);
-    double near = INFINITY; /* of the ground points that rays through the section go to */
+    double near = INFINITY; /* nearest and farthest ground point of rays through the section */
     double far = 0.0;
     double lit = 0.0;
     for (int i = 0; i < count; i++)
@@ -229,7 +229,7 @@ static double shadow_length(const struct pose *pose, double x)
     return hypot(far, ALTITUDE) - fmax(pose->has_dark_top ? 0.0 : lit, hypot(near, ALTITUDE));
 }
 
-/* The mean over the middle third of the rows. */
+/* Returns the mean over the middle third of the rows, pixels. */
 static double expected_shadow(const struct pose *pose)
 {
     double low, high;
@@ -240,8 +240,8 @@ static double expected_shadow(const struct pose *pose)
     return sum / LINES / SPACING;
 }
 
-/* Whether no sound passes below it in the middle third of the rows: there the seabed is lit behind
- * the highlight, up to 2 pixels deep, and drowns in its side lobes. */
+/* Returns whether no sound passes below the body in the middle third of the rows. Sound that does
+ * lights the seabed behind the highlight, up to 2 pixels deep, which drowns in side lobes. */
 static bool stands_in_seabed(const struct pose *pose)
 {
     double low, high;
@@ -265,7 +265,7 @@ static void expect_ok(sonject_context *context, sonject_status status)
         fail_msg("%s", sonject_context_message(context));
 }
 
-/* A length of the object's shape; nothing where that has none. */
+/* Appends a length of the object's shape unless it is 0. Returns the text's length. */
 static size_t add_key(char *text, size_t capacity, size_t length, const char *key, double value)
 {
     return value > 0.0 ? length + (size_t)snprintf(text + length, capacity - length, ", %s: %.17g",
@@ -294,7 +294,7 @@ static void set_object(sonject_context *context, sonject_scene *scene,
     expect_ok(context, sonject_scene_set(scene, "objects[0]", text));
 }
 
-/* aperture none: no penumbra, for closed forms are of one aspect. */
+/* Makes a scene without penumbrae (aperture none), since closed forms are of one aspect. */
 static sonject_scene *make_scene(sonject_context *context, uint64_t seed)
 {
     sonject_scene *scene = NULL;
@@ -315,7 +315,7 @@ static sonject_scene *make_scene(sonject_context *context, uint64_t seed)
     return scene;
 }
 
-/* Names that truth and measures share, and what standard errors those tell. */
+/* Members that truth and measures share, and the standard errors that measures tell. */
 static const struct {
     const char *name;
     size_t in_truth, in_measures, error_in_measures; /* error 0: CONTRAST_ERROR */
@@ -341,7 +341,7 @@ static const struct {
 
 #define SHARED_NAMES (sizeof shared_names / sizeof *shared_names)
 
-static int disagreements[SHARED_NAMES]; /* by more than 4 standard errors */
+static int disagreements[SHARED_NAMES]; /* differences above 4 standard errors */
 
 static void add_agreement(const sonject_object_truth *truth,
                           const sonject_contact_measures *measures)
@@ -357,7 +357,7 @@ static void add_agreement(const sonject_object_truth *truth,
     }
 }
 
-/* Injects it, and measures it in the box that its truth gives with a margin. */
+/* Injects the body and measures it in the box of its truth with a margin. */
 static void measure(sonject_context *context, const struct pose *pose, uint64_t seed,
                     sonject_contact_measures *measures)
 {
@@ -386,8 +386,8 @@ static void measure(sonject_context *context, const struct pose *pose, uint64_t 
     sonject_scene_release(&scene);
 }
 
-/* Along the track, of lines along the face that the sonar sees, and of the end beside it: it is
- * where the face ends in its middle, since that leans. */
+/* Returns the along-track length of the face that the sonar sees and of the end beside it, pixels.
+ * The face leans, so it ends where the middle of its edge is. */
 static double expected_highlight(const struct pose *pose)
 {
     const sonject_object_params *object = &pose->object;
@@ -396,15 +396,15 @@ static double expected_highlight(const struct pose *pose)
            SPACING;
 }
 
-/* Of many poses: measured less expected. */
+/* Results of many poses. Biases are measured less expected, pixels. */
 struct tally {
     int poses, good_shadows, good_highlights;
-    int told_shadows; /* that are good, or are without their dim part */
+    int told_shadows; /* good as they are or without their dim part */
     double shadow_bias, highlight_bias;
-    int standing;         /* in the seabed: see stands_in_seabed */
+    int standing;         /* those of stands_in_seabed */
     double standing_bias; /* of shadows */
-    double pulls[2]; /* rms of errors over the standard ones told: of shadows of those that stand in
-                        the seabed, and of highlights */
+    double pulls[2];      /* rms of errors over their told standard errors: of shadows of standing
+                             bodies, of highlights */
 };
 
 static bool is_good_shadow(double measured, double expected)
@@ -472,11 +472,11 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
     return tally;
 }
 
-/* Speckle leaves standard errors of 0.3 pixels to a shadow and of 0.4 to 1 to a highlight, which is
- * more than a third of what is allowed in some poses. Of 400 poses with this seed and 8001 to 8003,
- * no shadow misses it and 1 highlight: more than 2 in 100 would be once in 500 such tests. The
- * errors that are told are what they say: with those seeds their rms is 1.04 to 1.16 for shadows
- * and 0.90 to 1.15 for highlights, and of 80 poses it is known to 1/sqrt(160) = 8 %. */
+/* Speckle leaves standard errors of 0.3 pixels to a shadow and of 0.4 to 1 to a highlight. In some
+ * poses that is more than a third of the tolerance. No shadow and 1 highlight miss it in 400 poses,
+ * with this seed and 8001 to 8003. More than 2 in 100 would occur once in 500 such tests. The rms
+ * of errors over told ones is 1.04 to 1.16 for shadows and 0.90 to 1.15 for highlights with those
+ * seeds. 80 poses know the rms to 1/sqrt(160) = 8 %. */
 CLAIM(random_slabs_are_measured)
 {
     const struct tally tally = measure_poses("slabs", draw_slab, POSES);
@@ -489,15 +489,15 @@ CLAIM(random_slabs_are_measured)
     expect_below("mean error of highlights", fabs(tally.highlight_bias), 0.5);
     for (int i = 0; i < 2; i++)
         assert_true(tally.pulls[i] > 0.75 && tally.pulls[i] < 1.35);
-    /* truth is of the same names; rare edges are taken for another */
+    /* truth has the same members; rarely one edge is taken for another */
     for (size_t i = 0; i < SHARED_NAMES; i++) {
         print_message("%s: ", shared_names[i].name);
         expect_below("off truth by more than 4 standard errors, of 100", disagreements[i], 3.0);
     }
 }
 
-/* The lit top of a thick target is no part of its shadow. That of a smooth one, which is as dark,
- * is: nobody could tell them apart. */
+/* The lit top of a thick target is no part of its shadow. The top of a smooth one is as dark as the
+ * shadow and is part of it, for nobody could tell them apart. */
 CLAIM(solids_are_measured)
 {
     const struct tally boxes = measure_poses("boxes", draw_box, SOLIDS);

@@ -1,5 +1,4 @@
-/* Fouling: what grows on an object leaves the mean level that its material says, and takes from
- * glints what roughness takes. */
+/* Fouling keeps the mean level of an object's material. It takes from glints as roughness does. */
 #include "sea.h"
 
 #define ROWS    65
@@ -16,7 +15,7 @@ static sonject_object_params *open_ball(struct sea **sea, double albedo_db, doub
     return ball;
 }
 
-/* Energy of a ball with its fouling over that without, whose rays know it to 1e-4. */
+/* Returns the energy of a ball with fouling over that without, which rays know to 1e-4. */
 static struct estimate level_of(double albedo_db, double relief_m)
 {
     double ratios[SEEDS];
@@ -42,9 +41,9 @@ CLAIM(albedo_leaves_the_mean_level)
     expect_estimate("level with 7 dB", level_of(7.0, 0.0), 1.0, 0.0);
 }
 
-/* A facet where the surface stands at the cosine u to the sonar shows u + s sqrt(1 - u^2) g, g
- * normal, but neither less than nothing nor more than four times u: over the ball, where clean ones
- * show u, that is a little more. */
+/* Returns the level of a ball with slopes of rms s over that of a clean ball. Where the surface
+ * stands at the cosine u to the sonar, a clean facet shows u. A sloped one shows u + s sqrt(1 -
+ * u^2) g, g normal, limited to 0...4 u, which is a little more on the mean. */
 static double level_on_slopes(double slope)
 {
     double sum = 0.0;
@@ -67,7 +66,7 @@ CLAIM(relief_changes_the_level_by_what_facets_hide_alone)
     expect_estimate("level on slopes of 0.4", level_of(0.0, 0.008), level_on_slopes(0.4), 1e-3);
 }
 
-/* Sound that the ball sends on to the seabed, or gets from there. */
+/* The sound that the ball sends on to the seabed, or gets from there, keeps its level. */
 CLAIM(albedo_leaves_the_level_of_two_interactions)
 {
     static const struct ranges all = {0, 0.0, 1.0};
@@ -83,7 +82,7 @@ CLAIM(albedo_leaves_the_level_of_two_interactions)
         ratio_of(energy_of(&energies[1], 1, 0), energy_of(&energies[0], 1, 0));
     expect_estimate("energy of two interactions", ratio, 1.0, 1e-3);
     expect_below("its error", ratio.error, 0.05);
-    /* what differs from seed to seed is the growth */
+    /* the scatter from seed to seed is the growth's */
     expect_below("scatter without growth over that with it",
                  energy_of(&energies[0], 1, 0).error / energy_of(&energies[1], 1, 0).error, 0.5);
 }

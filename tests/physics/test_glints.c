@@ -1,5 +1,5 @@
-/* Glints against the closed forms of physical optics: level, range and phase of each shape's, and
- * what becomes of them in an image. Levels are systematic: 0.2 dB. */
+/* Glints compared with the closed forms of physical optics: level, range and phase of each shape's
+ * glint, and its image. Levels have a systematic tolerance of 0.2 dB. */
 #include "sea.h"
 
 #define ROWS       201
@@ -9,7 +9,7 @@
 #define PHASE      0.05 /* rad; the next order of stationary phase is 1/(2ka), 1/250 for 0.3 m */
 #define WAVELENGTH 0.015
 
-/* A shape 1 m over the seabed. */
+/* Opens a sea with a shape 1 m over the seabed. */
 static struct sea *open_with(enum shape_kind shape, double length, double width, double height,
                              double diameter)
 {
@@ -30,10 +30,10 @@ static void turn(struct sea *sea, double heading_deg, double pitch_deg, double r
     sea_ready(sea);
 }
 
-/* Rigid sphere, all sub-strips together: a/2, or with the wavefront's own curvature in elevation
- * (the fan is a line of circular fans) a/2 / sqrt(1 + a/r). A wrong sound speed in the processor
- * scales ranges by c_ref/c and, since amplitudes are normalised by the square of the processor's
- * range, amplitudes by its square. */
+/* A rigid sphere echoes a/2, all sub-strips together. With the wavefront's own curvature in
+ * elevation (the fan is a line of circular fans) it is a/2 / sqrt(1 + a/r). A wrong sound speed in
+ * the processor scales ranges by c_ref/c. Amplitudes are normalised by the square of the
+ * processor's range, so they scale by the square. */
 CLAIM(a_sphere_echoes_half_its_radius)
 {
     static const struct {
@@ -56,8 +56,8 @@ CLAIM(a_sphere_echoes_half_its_radius)
     }
 }
 
-/* Down to half a wavelength: a/2 within what physical optics' false echo of the terminator and
- * cells of an eighth of a wavelength make of it, 2 dB. */
+/* Spheres down to half a wavelength echo a/2 within 2 dB. The errors are physical optics' false
+ * echo of the terminator and cells of an eighth of a wavelength. */
 CLAIM(smallest_spheres_echo)
 {
     static const double radii[] = {0.2505, 0.4, 0.5, 0.8}; /* wavelengths */
@@ -70,7 +70,7 @@ CLAIM(smallest_spheres_echo)
     }
 }
 
-/* Expected energy of a Lambert sphere over its radius squared, in pixels that are long. */
+/* Returns the expected energy of a Lambert sphere over its radius squared, in long pixels. */
 static double rough_energy(double a, uint64_t seed)
 {
     struct sea *sea = sea_open(41, 41, RANGE);
@@ -81,8 +81,8 @@ static double rough_energy(double a, uint64_t seed)
     return sum_of(image->target_energy, image->pixels) / (a * a);
 }
 
-/* The smallest rough sphere is met by 16 rays: each run has its energy to a quarter, and all of
- * them their mean, to 4 standard errors and 1 % of what is small against the large one. */
+/* 16 rays meet the smallest rough sphere, so each run knows its energy to a quarter. The mean of
+ * all agrees with the large sphere's to 4 standard errors and 1 %. */
 CLAIM(the_smallest_rough_sphere_keeps_its_energy)
 {
     double ratios[16];
@@ -94,13 +94,14 @@ CLAIM(the_smallest_rough_sphere_keeps_its_energy)
     expect_below("deviation of one run", ratio.error * sqrt(COUNT(ratios) - 1.0), 0.4);
 }
 
-/* What a front does that is depth(x, w) behind its nearest point, x and w across the sight:
- * -i/lambda times the integral of W(x) exp(2ik depth + ik w^2/r) G(offset - depth), the wavefront
- * being curved in elevation alone; without W where resolution is 0. depth < 0: nothing there. */
+/* A target's front, depth(x, w) behind its nearest point, with x and w across the line of sight.
+ * Its echo is -i/lambda times the integral of W(x) exp(2ik depth + ik w^2/r) G(offset - depth),
+ * since the wavefront is curved in elevation alone. resolution 0: no W. depth < 0: nothing
+ * there. */
 struct front {
     double (*depth)(double x, double w, const double *sizes);
     const double *sizes;
-    double half_side; /* of the square that holds it */
+    double half_side; /* of the square that holds the front, m */
 };
 
 static double complex optics(const struct sea *sea, const struct front *front, double distance,
@@ -129,7 +130,7 @@ static double rectangle_depth(double x, double w, const double *sizes)
     return fabs(x) <= sizes[0] && fabs(w) <= sizes[1] ? 0.0 : -1.0;
 }
 
-/* sizes: half along the track and across the sight, tangent of the tilt. */
+/* sizes: half lengths along the track and across the sight, and the tangent of the tilt. */
 static double tilted_depth(double x, double w, const double *sizes)
 {
     return fabs(x) <= sizes[0] && fabs(w) <= sizes[1] ? (w + sizes[1]) * sizes[2] : -1.0;
@@ -141,7 +142,7 @@ static double cone_depth(double x, double w, const double *sizes)
     return rho <= sizes[0] ? rho * sizes[1] : -1.0;
 }
 
-/* sqrt(R1 R2)/2 at the specular point: a capsule off broadside shows the ball of one end. The joint
+/* A capsule off broadside shows the ball of one end: sqrt(R1 R2)/2 at the specular point. The joint
  * of ball and tube is at least 2.5 Fresnel radii sqrt(lambda a/2) from the point here. */
 CLAIM(a_capsule_shows_the_ball_of_an_end)
 {
@@ -156,9 +157,9 @@ CLAIM(a_capsule_shows_the_ball_of_an_end)
     }
 }
 
-/* A wall seen broadside is a plane in x; the tube's curvature and the wavefront's add:
- * 1/R = 1/a + 1/r. sigma = R L^2 / (2 lambda). An open tube shows what a solid cylinder does, and
- * along its axis lets the sound through. */
+/* A wall seen broadside is a plane in x. The tube's curvature and the wavefront's add: 1/R = 1/a +
+ * 1/r. sigma = R L^2 / (2 lambda). An open tube echoes as a solid cylinder does, and along its axis
+ * lets the sound through. */
 CLAIM(a_cylinder_broadside)
 {
     const double curvature = 1.0 / (1.0 / 0.15 + 1.0 / RANGE);
@@ -169,7 +170,7 @@ CLAIM(a_cylinder_broadside)
         object->nose_end = object->tail_end = is_open ? SONJECT_END_OPEN : SONJECT_END_FLAT;
         expect_close("no W, dB re 1 m^2", decibels_of_amplitude(sea_peak(sea, NULL)),
                      decibels_of_energy(curvature / (2.0 * WAVELENGTH)), LEVEL_DB);
-        /* a pixel on its middle: the sinc's integral over it is delta within 1/(pi^2 20) */
+        /* a pixel at the middle: the sinc's integral over the wall is delta within 1/(pi^2 20) */
         const double column = sea_column(sea, sea_slant_range(sea, 0) - 0.15);
         const double nearest = floor(column + 0.5);
         const double complex pixel = sea_image(sea)->target[100 * COLUMNS + (size_t)nearest];
@@ -183,8 +184,9 @@ CLAIM(a_cylinder_broadside)
     expect_below("open end on, dB re solid", decibels_of_amplitude(along[1] / along[0]), -20.0);
 }
 
-/* Off axis: sqrt(a cos(theta) / 2 lambda) |integral over the axis of exp(2iks sin(theta)) G|, which
- * without the pulse is (a L^2 / 2 lambda) (sin beta/beta)^2 cos(theta), beta = k L sin(theta). */
+/* Returns the amplitude off axis: sqrt(a cos(theta) / 2 lambda) |integral over the axis of exp(2iks
+ * sin(theta)) G|. Without the pulse its square is (a L^2 / 2 lambda) (sin beta/beta)^2 cos(theta),
+ * beta = k L sin(theta). */
 static double tilted_cylinder(const struct sea *sea, double a, double length, double theta)
 {
     const double k = sea_wavenumber(sea), step = 1e-4;
@@ -206,8 +208,8 @@ CLAIM(a_cylinder_off_axis)
     for (size_t i = 0; i < COUNT(degrees); i++) {
         struct sea *sea = open_with(SHAPE_CYLINDER, 1.0, 0.0, 0.0, 0.3);
         turn(sea, degrees[i], 0.0, 0.0);
-        /* between the sight and the plane across the axis, which is level while the sight is not:
-         * sin(theta) = sin(heading) cos(depression) */
+        /* the angle between the sight and the plane across the axis. The axis is level and the
+         * sight is not: sin(theta) = sin(heading) cos(depression) */
         const double theta =
             asin(sin(degrees[i] * PI / 180.0) * sea_centre(sea, 0)[1] / sea_slant_range(sea, 0));
         print_message("heading %.2f degrees\n", degrees[i]);
@@ -216,8 +218,8 @@ CLAIM(a_cylinder_off_axis)
     }
 }
 
-/* With W, a tilted wall shows a delta^2/(2 lambda) a pixel while sin(theta) < lambda/4 delta
- * (8.6 degrees), and nothing beyond. */
+/* A tilted wall shows, with W, a delta^2/(2 lambda) a pixel while sin(theta) < lambda/4 delta (8.6
+ * degrees), and nothing beyond. */
 CLAIM(a_cylinder_leaves_the_aspects)
 {
     static const double degrees[] = {3.0, 5.0, 13.0};
@@ -226,8 +228,8 @@ CLAIM(a_cylinder_leaves_the_aspects)
         struct sea *sea = open_with(SHAPE_CYLINDER, 3.0, 0.0, 0.0, 0.3);
         turn(sea, degrees[i], 0.0, 0.0);
         const struct image *image = sea_image(sea);
-        /* mean energy along the middle of the wall, over columns; the pulse's energy spread over
-         * columns is the integral of G^2 */
+        /* mean energy along the middle of the wall, summed over columns, over which the pulse
+         * spreads the integral of G^2 */
         double sum = 0.0;
         for (size_t row = 90; row <= 110; row++)
             for (size_t column = 0; column < COLUMNS; column++) {
@@ -243,14 +245,14 @@ CLAIM(a_cylinder_leaves_the_aspects)
         print_message("heading %.0f degrees\n", degrees[i]);
         if (degrees[i] < 8.0)
             expect_close("pixel, dB re a delta^2/2 lambda", level, 0.0, LEVEL_DB);
-        else /* the ends' wide-angle echo leaks into the middle: ends 1.5 m away */
+        else /* the wide-angle echo of the ends, 1.5 m away, leaks in */
             expect_below("pixel beyond the aspects, dB re a delta^2/2 lambda", level, -30.0);
     }
 }
 
-/* Flat faces square to the sight, of a cylinder's end, a plate, a disc, a box and a wedge's slope;
- * the small ones are a plane wave's (A/lambda)^2 within 0.1 dB. (From a point source both
- * directions of the wavefront would curve: r sin(ka^2/2r) for the disc.) */
+/* Flat faces at right angles to the sight: a cylinder's end, a plate, a disc, a box and a wedge's
+ * slope. The small ones return a plane wave's (A/lambda)^2 within 0.1 dB. (With a point source the
+ * wavefront would curve in both directions: r sin(ka^2/2r) for the disc.) */
 CLAIM(flat_faces)
 {
     static const double sizes[][2] = {{0.05, 0.05}, {0.15, 0.15}, {0.3, 0.3}};
@@ -297,7 +299,7 @@ CLAIM(flat_faces)
     }
 }
 
-/* A plate turned off the sight, of which both far edges echo, by quadrature at all ranges of it. */
+/* A plate turned off the sight echoes from both far edges, as by quadrature at all its ranges. */
 CLAIM(a_plate_off_the_sight)
 {
     const double tilt = 0.1, sizes[] = {0.15, 0.25 * cos(tilt), tan(tilt)};
@@ -315,16 +317,16 @@ CLAIM(a_plate_off_the_sight)
         off = fmax(off, cabs(line_at(sea, &line, nearest + behind) * turn - expected));
     }
     /* ranges of 50 m come in steps of 3.8 um in single precision: two of them are a phase of
-     * 0.0064, and 0.02 dB of level; cells of lambda/8 that the edges divide, 1.6 m of them, are hit
+     * 0.0064, and 0.02 dB of level. Cells of lambda/8 that the edges, 1.6 m of them, divide are hit
      * or missed by chance: 4 x 0.29 sqrt(L/c) c^2/lambda = 0.008 m */
     expect_below("error, dB re 1 m", decibels_of_amplitude(off),
                  decibels_of_amplitude(0.008 + 0.009 * peak));
 }
 
-/* A plane reflects as its image source does: +R exp(2ikr) for both curvatures, which the sphere has
- * whatever the fan: +(a/2) exp(2ik(r - a)). So a mirror's -i/lambda has the right sign, and a path
- * longer by lambda/8 (there and back lambda/4) turns the phase by +pi/2. A pressure-release face
- * turns the sign, roughness takes exp(-P^2/2), P = 2 k eta. */
+/* A plane reflects as its image source does: +R exp(2ikr) for both curvatures. A sphere has both
+ * with any fan: +(a/2) exp(2ik(r - a)). So a mirror's -i/lambda has the right sign. A path longer
+ * by lambda/8 (there and back lambda/4) turns the phase by +pi/2. A pressure-release face turns the
+ * sign. Roughness leaves exp(-P^2/2), P = 2 k eta. */
 CLAIM(phase_and_level_are_those_of_path_and_surface)
 {
     static const struct {
@@ -371,7 +373,7 @@ CLAIM(more_rays_change_no_glint)
 CLAIM(more_rays_change_no_thin_bar)
 {
     double mean[2] = {0.0, 0.0};
-    for (size_t i = 0; i < 17; i++) { /* one of many rays, 16 of few */
+    for (size_t i = 0; i < 17; i++) { /* one run of many rays, 16 of few */
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
         sonject_object_params *bar = sea_add(sea, SHAPE_BOX, 1.0, 0.1, 0.0);
         bar->height_m = 0.006;
@@ -412,8 +414,8 @@ CLAIM(faces_seen_flat_return_nothing_but_edges)
     }
 }
 
-/* The far edge of a level face that ends along the track: what is left of the integral over the
- * face is W tan(grazing) / 4 pi, here of all sub-strips, whatever the number of rays. */
+/* The far edge of a level face, which lies along the track, returns the rest of the integral over
+ * the face: W tan(grazing) / 4 pi of all sub-strips, whatever the number of rays. */
 CLAIM(far_edges_return_what_is_left_of_the_face)
 {
     static const double altitudes[] = {25.0, 15.0, 11.0, 8.5};
@@ -438,7 +440,7 @@ CLAIM(far_edges_return_what_is_left_of_the_face)
         }
 }
 
-/* What is left where a smooth convex body returns nothing: -78 dB re 1 m^2, where a seabed pixel at
+/* The residual where a smooth convex body returns nothing is -78 dB re 1 m^2. A pixel of seabed at
  * -27 dB lies at -73. */
 CLAIM(little_is_left_beside_a_glint)
 {
@@ -464,9 +466,8 @@ CLAIM(little_is_left_beside_a_glint)
     }
 }
 
-/* Cells are as wide as curvature and columns allow (cell_of_part). Against 16 times as
- * many rays, a pixel is off by less than -80 dB re 1 m^2 in the mean, where one of the seabed lies
- * at -73. */
+/* Cells are as wide as curvature and columns allow (cell_of_part). Compared with 16 times as many
+ * rays, a pixel is off by less than -80 dB re 1 m^2 on the mean. A pixel of seabed lies at -73. */
 CLAIM(wide_cells_leave_no_more_than_noise)
 {
     static const struct {
@@ -505,8 +506,8 @@ CLAIM(wide_cells_leave_no_more_than_noise)
     }
 }
 
-/* Semi-axes a, b, c seen along n, in its own frame: the front is h = sqrt(a^2 nx^2 + b^2 ny^2 +
- * c^2 nz^2) before the centre, where sqrt(R1 R2) = abc/h^2. */
+/* The front of an ellipsoid of semi-axes a, b, c, seen along n in its own frame, is h = sqrt(a^2
+ * nx^2 + b^2 ny^2 + c^2 nz^2) before the centre. There sqrt(R1 R2) = abc/h^2. */
 CLAIM(an_ellipsoid)
 {
     static const double poses[][3] = {
@@ -535,8 +536,8 @@ CLAIM(an_ellipsoid)
 
 /* A ring edge on shows its outer equator: R1 = R + b, R2 = b. Face on, a whole circle of the ring
  * is equally near: rho = R. The front there is a parabola of radius b across the ring, so the
- * amplitude is 1/lambda 2 pi R sqrt(lambda b/2), less what the wavefront's curvature in elevation
- * takes: |mean over the circle of exp(ik (R sin)^2/r)|. */
+ * amplitude is 1/lambda 2 pi R sqrt(lambda b/2). The wavefront's curvature in elevation leaves
+ * |mean over the circle of exp(ik (R sin)^2/r)| of it. */
 CLAIM(a_torus)
 {
     for (int is_face_on = 0; is_face_on < 2; is_face_on++) {
@@ -560,8 +561,7 @@ CLAIM(a_torus)
 }
 
 /* Tip on, a cone shows its tip, lambda tan^2(alpha)/8 pi, and its rim, where its side ends
- * abruptly, a tan(alpha)/2. The side is flat enough for cells of lambda/8 to hold the rim's phase.
- */
+ * abruptly, a tan(alpha)/2. The side is so flat that cells of lambda/8 hold the rim's phase. */
 CLAIM(a_cone_tip_on)
 {
     static const double sizes[] = {0.3, 1.0 / 3.0}; /* radius, height over radius */

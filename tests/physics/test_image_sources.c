@@ -1,6 +1,6 @@
 /* Glints and rough echoes by way of plane mirrors, the seabed and the sea surface, through layers
- * and none. The reference is worked out from image sources and stationary points, in double
- * precision. Levels are systematic: 0.2 dB. */
+ * or none. The reference is worked out from image sources and stationary points, in double
+ * precision. Levels have a systematic tolerance of 0.2 dB. */
 #include "layered_sea.h"
 
 #define ROWS       101
@@ -24,10 +24,10 @@ static const struct water_layer thermocline[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.
 static const struct water_layer slow_above[] = {{0.0, 1520.0, 1.0}, {8.0, 1490.0, 1.0}};
 static const struct water_layer light_above[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.0, 0.4}};
 
-/* Two layers (or none), where the patch is, sonar and surface, what the seabed returns (0: coarse
- * sand where it is rough, APL-UW TR 9407), the height of the sphere's lowest point, the limit of
- * interactions, and the most bounces of the families that are compared. With more interactions
- * there are images of three bounces, farther than the ranges of those. Heights are such that
+/* Two layers (or none), the patch's range, heights of sonar and surface, the seabed's reflection,
+ * roughness, the height of the sphere's lowest point, the limit of interactions, and the most
+ * bounces of the compared families. is_sand: the seabed is coarse sand (APL-UW TR 9407). With more
+ * interactions there are images of three bounces, beyond the compared ranges. At these heights
  * families that overlap do not cancel. */
 struct mirror_case {
     const struct water_layer *layers;
@@ -62,8 +62,8 @@ static struct sea *open_case(const struct mirror_case *mirrors)
     return sea;
 }
 
-/* A sphere high over a smooth seabed returns a/2 (1, 2R, R^2) at its three ranges, under a surface
- * likewise; in shallow water there is every family of up to two mirrors a leg. */
+/* A sphere high over a smooth seabed, or under a surface, returns a/2 (1, 2R, R^2) at its three
+ * ranges. In shallow water there is every family of up to two mirrors a leg. */
 CLAIM(glints_by_mirrors)
 {
     static const struct mirror_case cases[] = {
@@ -94,7 +94,7 @@ CLAIM(glints_by_mirrors)
         print_message("R %.1f at %.0f m, %u interactions\n", cases[i].reflection, cases[i].range,
                       (unsigned)cases[i].interactions);
         expect_families(sea, &line, cases[i].bounces);
-        if (i != 1 && i != 8) /* the closed form itself: twice a/2, upside down */
+        if (i != 1 && i != 8) /* the closed form itself: twice a/2, sign reversed */
             continue;
         const double range = family_of(sea, SONAR, i == 1 ? BY_SEABED : BY_SURFACE).range;
         const double complex echo =
@@ -106,9 +106,9 @@ CLAIM(glints_by_mirrors)
     }
 }
 
-/* A glint of which roughness leaves no more than exp(-12) is not traced: straight back at normal
- * incidence, by way of the seabed at half the angle between the two directions, here some 44
- * degrees. */
+/* A glint of which roughness leaves no more than exp(-12) is not traced. The straight glint is at
+ * normal incidence. The one by way of the seabed is at half the angle between the two directions,
+ * here some 44 degrees. */
 CLAIM(roughness_that_leaves_no_glint_is_not_traced)
 {
     static const struct {
@@ -133,13 +133,14 @@ CLAIM(roughness_that_leaves_no_glint_is_not_traced)
     }
 }
 
-/* A pulse far longer than the paths differ: |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and back. */
+/* Lloyd's mirror for a pulse far longer than the paths differ: there and back the amplitude is
+ * |e^{ikR1}/R1 + R e^{ikR2}/R2|^2. */
 CLAIM(lloyds_mirror)
 {
     static const double reflections[] = {-1.0, 0.6};
     for (size_t i = 0; i < 24; i++) {
         const double reflection = reflections[i / 12];
-        const double a = 0.1; /* edges that physical optics adds: 1/(2ka) of each family */
+        const double a = 0.1; /* physical optics' edges add 1/(2ka) to each family */
         struct sea *sea = open_at(RANGE, COLUMNS, 3, 0.0);
         sea->sonar->bandwidth_hz = 100.0;
         /* so low that the sonar and its image see the same point of the sphere */
@@ -159,8 +160,8 @@ CLAIM(lloyds_mirror)
     }
 }
 
-/* Physical optics on an upright wall of height b that stands on the seabed, for two image heights;
- * the fan's wavefronts do not curve along-track. */
+/* Returns physical optics' echo of an upright wall of height b on the seabed, for two heights of
+ * sources. The fan's wavefronts do not curve along-track. */
 static double complex wall_family(const struct sea *sea, double b, double length, double one,
                                   double other, double range)
 {
@@ -175,7 +176,8 @@ static double complex wall_family(const struct sea *sea, double b, double length
     return -I / (2.0 * WAVELENGTH) * length * sum;
 }
 
-/* sigma = (2 A cos(grazing)/lambda)^2 from D-M and M-D together; what is buried does not count. */
+/* D-M (out direct, home by the mirror) and M-D together give sigma = (2 A cos(grazing)/lambda)^2.
+ * The buried part of the wall does not count. */
 CLAIM(a_wall_on_the_seabed)
 {
     const double b = 0.2, length = 0.3;
@@ -208,9 +210,9 @@ CLAIM(a_wall_on_the_seabed)
     }
 }
 
-/* Half a sphere buried: with its image in a rigid seabed the rest is a whole sphere, which the
- * sonar and its image see from two sides: D-M and M-D together return a/2, not 2 a/2. To what is
- * wholly buried no way leads, whichever side it comes from. */
+/* A sphere is half buried. With its image in a rigid seabed the rest is a whole sphere, which the
+ * sonar and its image see from two sides. So D-M and M-D together return a/2, not 2 a/2. No path
+ * leads to a wholly buried sphere, from either side. */
 CLAIM(buried_spheres)
 {
     double complex before = 0.0;
@@ -235,8 +237,8 @@ CLAIM(buried_spheres)
     assert_true(line_energy(&line) == 0.0);
 }
 
-/* A black plate, level or upright, so far beyond the point of the seabed that mirrors the sonar
- * into the first object, its foot at a height. */
+/* Adds a black plate, level or upright, with its foot at a height. It is `beyond` m behind the
+ * point of the seabed that mirrors the sonar into the first object. */
 static void add_plate(struct sea *sea, double wide, double beyond, double height, bool is_upright,
                       double along)
 {
@@ -250,8 +252,8 @@ static void add_plate(struct sea *sea, double wide, double beyond, double height
     sea_ready(sea);
 }
 
-/* The way by the seabed is closed by an object that hides the point of reflection, in front of it
- * or behind it, and open beside it; the straight way is not. */
+/* An object on the point of reflection, or hiding it from either side, closes the way by the
+ * seabed. Beside the point the way is open. The straight way stays open. */
 CLAIM(a_hidden_reflection_is_not_heard)
 {
     static const struct {
@@ -269,7 +271,7 @@ CLAIM(a_hidden_reflection_is_not_heard)
         print_message("plate %zu\n", i);
         for (enum image_of_sonar out = SONAR; out <= BY_SEABED && plates[i].along == 0.0; out++) {
             const double range = family_of(sea, out, BY_SEABED).range;
-            /* what is left of the straight echo there: the residual of physical optics */
+            /* the straight echo leaves the residual of physical optics there */
             expect_below("closed way, dB re a/2",
                          decibels_of_amplitude(cabs(line_at(sea, &line, range)) / 0.075), -30.0);
         }
@@ -279,7 +281,7 @@ CLAIM(a_hidden_reflection_is_not_heard)
     }
 }
 
-/* What cannot be heard in the patch changes no bit of it; what can does. */
+/* A surface that cannot be heard in the patch changes no bit of it. One that can be heard does. */
 CLAIM(a_far_surface_changes_nothing)
 {
     static const double depths[] = {0.0, 10000.0, 14.0};
@@ -296,7 +298,7 @@ CLAIM(a_far_surface_changes_nothing)
     assert_true(images_differ(images[0], images[2]));
 }
 
-/* The image holds what the line holds: the energies of all families are those of their sum. */
+/* The image holds the families of the line, and its energies are those of its field. */
 CLAIM(families_in_the_image)
 {
     static const enum image_of_sonar pairs[][2] = {
@@ -321,8 +323,8 @@ CLAIM(families_in_the_image)
     }
 }
 
-/* What is left of D-M and M-D where a smooth convex body returns nothing: as straight there and
- * back (tests/physics/test_glints.c), below -64 dB re 1 m^2 at the default number of rays. */
+/* The residual of D-M and M-D where a smooth convex body returns nothing is below -64 dB re 1 m^2
+ * at the default number of rays, as there and back straight (tests/physics/test_glints.c). */
 CLAIM(little_is_left_beside_a_mirrored_glint)
 {
     const double a = 0.4;
@@ -345,8 +347,8 @@ CLAIM(little_is_left_beside_a_mirrored_glint)
                  decibels_of_energy(sum / (29.0 * (double)(last - first + 1))), -64.0);
 }
 
-/* A rough sphere over a smooth seabed, once so low that both sources are one direction, and under
- * a surface through a thermocline. */
+/* A rough sphere lies over a smooth seabed, once with both sources in one direction, since they are
+ * low, or under a surface, through a thermocline. */
 CLAIM(rough_spheres_by_mirrors)
 {
     static const struct {
@@ -372,7 +374,7 @@ CLAIM(rough_spheres_by_mirrors)
                 sea->sonar->bandwidth_hz = 15e3; /* columns sample the pulse's energy */
                 sea->injection->interactions = mirrored ? 3 : 1;
                 sea->injection->seed = 1 + seed + 6 * mirrored;
-                sea->seabed->lambert = 1e-9; /* chains by the seabed are not meant */
+                sea->seabed->lambert = 1e-9; /* to leave out chains by the seabed */
                 make_rough(sea_object(sea, 0), 0.1);
                 const struct image *image = sea_image(sea);
                 sum[mirrored] = sum_of(image->target_energy, image->pixels);
@@ -386,8 +388,7 @@ CLAIM(rough_spheres_by_mirrors)
     }
 }
 
-/* The echo of a rough sphere by way of the seabed is where half its path ends, and a plate over the
- * point of reflection takes it away. */
+/* A plate over the point of reflection takes away a rough sphere's echoes by way of the seabed. */
 CLAIM(a_rough_sphere_behind_a_hidden_reflection)
 {
     double sum[3];

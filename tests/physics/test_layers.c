@@ -1,7 +1,7 @@
 /* Images through layers of water, straight from the sonar and by several interactions: weak layers,
  * planes that transmit only a part, sound close to total reflection. The reference is Snell's law
  * and the ray tube, summed up layer by layer (reference_layers.h), and Rayleigh's reflection at
- * each plane. Levels are systematic: 0.2 dB. */
+ * each plane. Levels have a systematic tolerance of 0.2 dB. */
 #include "layered_sea.h"
 
 #define LEVEL_DB 0.2
@@ -9,8 +9,8 @@
 #define GRADIENT 200  /* layers */
 
 /* Warm water over a thermocline, 8 m over the seabed; 1490 m/s at the seabed, 1505 at 25 m; the
- * sonar in the slower water, where sound that has gone 60 m runs level in the water below; a layer
- * through which far away all sound runs level; and planes that differ in density. */
+ * sonar in the slower water, with sound that after 60 m runs level in the water below; a layer in
+ * which all far sound runs level; and layers of different density. */
 static const struct water_layer thermocline[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.0, 1.0}};
 static struct water_layer gradient[GRADIENT];
 static const struct water_layer slow_above[] = {{0.0, 1520.0, 1.0}, {8.0, 1490.0, 1.0}};
@@ -25,7 +25,7 @@ static const struct {
     const struct water_layer *layers;
     size_t count;
     double middle; /* of the patch, processor range, m */
-    double height; /* of what hangs in it, m */
+    double height; /* of targets that hang in it, m */
 } seas[] = {
     {"thermocline", thermocline, 2, 40.0, 1.2},
     {"thermocline", thermocline, 2, 120.0, 1.2},
@@ -72,8 +72,8 @@ static double minus_amplitude(double range, const void *context)
     return -cabs(line_at(heard->sea, heard->line, range));
 }
 
-/* Around the sphere the water is straight: its front is where the ray to its centre meets it. The
- * wavefront curves in elevation alone. */
+/* Compares a sphere's glint. Rays around the sphere are straight, so its front is where the ray to
+ * its centre meets it. The wavefront curves in elevation alone. */
 static void expect_sphere(struct sea *sea, double a)
 {
     sea_ready(sea);
@@ -100,8 +100,7 @@ static void expect_sphere(struct sea *sea, double a)
                  0.0, PHASE);
 }
 
-/* On the seabed and over it; and with its top near the thermocline, away from the patch's middle.
- */
+/* The sphere is on the seabed, over it, or has its top near the thermocline, beside the middle. */
 CLAIM(a_sphere_echoes_its_ray_tube)
 {
     for (size_t i = 0; i < COUNT(seas); i++)
@@ -120,8 +119,8 @@ CLAIM(a_sphere_echoes_its_ray_tube)
 
 /* ---- where things are ---- */
 
-/* A place given by its processor range is where the seabed is heard at that time; the map's pixels
- * lie there too, and the image shows them there. */
+/* A processor range stands for the place where the seabed is heard at that time. The map's pixels
+ * lie there, too, and the image shows them there. */
 CLAIM(processor_range_is_travel_time)
 {
     for (size_t number = 0; number < WEAK_SEAS; number++) {
@@ -153,9 +152,9 @@ CLAIM(processor_range_is_travel_time)
 
 #define ROWS    240
 #define COLUMNS 200
-#define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
+#define EDGE    24 /* pixels near an edge, which lack a part of |W|^2 or of the pulse */
 
-/* mu sin^2(grazing) times the resolution cell's area and both intensities. */
+/* Returns mu sin^2(grazing) times the resolution cell's area and both intensities. */
 static double closed_form(const struct sea *sea, double processor_range)
 {
     double area;
@@ -170,7 +169,7 @@ CLAIM(the_seabeds_level)
         const struct image *image = sea_image_of(sea, NULL, true);
         const struct estimate energy = level_over(sea, image, EDGE, EDGE, false, closed_form);
         const struct estimate field = level_over(sea, image, EDGE, EDGE, true, closed_form);
-        /* W's tail beyond the kept reach: 0.1 % of the energy */
+        /* W's tail beyond the kept reach has 0.1 % of the energy */
         expect_estimate("expected energy over closed form", energy, 1.0, 2e-3);
         expect_below("its 4 standard errors", 4.0 * energy.error, number < WEAK_SEAS ? 4e-3 : 8e-3);
         expect_estimate("realisation over closed form", field, 1.0, 2e-3);
@@ -180,8 +179,8 @@ CLAIM(the_seabeds_level)
 
 /* ---- a rough target, and shadows ---- */
 
-/* Energy of a tilted Lambert plate: mu cos^2 times its area, and both intensities. The centroid of
- * its energy is its travel time. */
+/* A tilted Lambert plate has the energy mu cos^2 times its area and both intensities. The energy's
+ * centroid is at the plate's travel time. */
 CLAIM(a_rough_plate)
 {
     const double tilt = 0.5;
@@ -195,7 +194,7 @@ CLAIM(a_rough_plate)
         object->heading_rad = -0.5 * PI;
         make_rough(object, 0.1);
         struct reference_sound sound = {0};
-        for (int i = 0; i < 20; i++) { /* turning moves it */
+        for (int i = 0; i < 20; i++) { /* turning moves the plate */
             sea_ready(sea);
             sound = straight(sea, sea_centre(sea, 0)[1], sea_centre(sea, 0)[2]);
             object->pitch_rad = sound.grazing + tilt - 0.5 * PI;
@@ -215,7 +214,7 @@ CLAIM(a_rough_plate)
     }
 }
 
-/* Column at which the seabed is hidden by an edge: its ray goes straight on to the seabed. */
+/* Returns the column at which an edge hides the seabed. The edge's ray goes straight on to it. */
 static double column_behind(const struct sea *sea, double range, double height)
 {
     const double on = range + height / tan(straight(sea, range, height).grazing);
@@ -237,7 +236,7 @@ CLAIM(the_shadow_of_a_flat_top)
         const double unbent = height * (centre + 0.6) / (ALTITUDE - height);
         const double bent = height / tan(straight(sea, centre + 0.6, height).grazing);
         print_message("shadow of %.3f m, without layers %.3f m\n", bent, unbent);
-        /* layers matter, more than the test can overlook */
+        /* the layers' effect is larger than the tolerance */
         assert_true(fabs(bent - unbent) > 0.25 * 0.025);
         expect_close("shadow begins, column", shadow_edge(visibility, 0, middle), near, 0.08);
         expect_close("shadow ends, column", shadow_edge(visibility, middle, 400), far, 0.08);
@@ -247,8 +246,8 @@ CLAIM(the_shadow_of_a_flat_top)
 
 /* ---- bits ---- */
 
-/* Everything that the library can hear in a patch: glints and rough echoes, of a sphere and a
- * capsule, by mirrors and by chains. */
+/* Returns an image of all kinds of echoes: glints and rough echoes of a sphere and a capsule, by
+ * mirrors and by chains. */
 static const struct image *all_echoes(const struct water_layer *layers, size_t count, double speed,
                                       double depth)
 {
@@ -271,8 +270,7 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
     return image;
 }
 
-/* Layers that differ in nothing are one layer, to the bit, and what lies over sonar and surface is
- * not heard. */
+/* Layers that differ in nothing are one, to the bit. Those over sonar and surface do not count. */
 CLAIM(layers_that_do_nothing)
 {
     static const struct water_layer equal[] = {
@@ -298,8 +296,8 @@ CLAIM(layers_that_do_nothing)
 
 /* ---- planes that do not bend ---- */
 
-/* Where density alone differs, rays are those of isovelocity water and R = (d1 - d2)/(d1 + d2) at
- * every angle: each way that crosses the plane once takes 1 - R^2, so energies take its square. */
+/* Planes where density alone differs keep isovelocity water's rays and have, at every angle, R =
+ * (d1 - d2)/(d1 + d2). A way that crosses the plane once keeps 1 - R^2, energies its square. */
 #define DENSITY 0.4
 #define SEEDS   8
 
@@ -319,7 +317,8 @@ static void add_energies(bool is_light_above, double source_side, uint64_t seed,
     struct sea *sea = layered_sea_open(121, 161, 40.0, layers, is_light_above ? 2 : 0);
     sea->sonar->transducer_side_m = source_side;
     sea->medium->sound_speed_mps = 1490.0;
-    /* heard within the patch; of ways by both mirrors some would cross the plane three times */
+    /* heard within the patch. Some ways by both mirrors, which two interactions exclude, would
+     * cross the plane three times */
     sea->surface->water_depth_m = 21.5;
     sea->seabed->forward.reflection = 0.7;
     sea->injection->interactions = 2;
@@ -352,7 +351,7 @@ CLAIM(density_alone_transmits)
         for (int kind = 0; kind < KINDS; kind++) {
             const struct estimate ratio = ratio_of(estimate_of(energies[1][kind], SEEDS),
                                                    estimate_of(energies[0][kind], SEEDS));
-            /* bins and tallies in single precision */
+            /* 1e-3 is for bins and tallies in single precision */
             expect_estimate(names[kind], ratio, expected, 1e-3 * expected);
             expect_below("its 4 standard errors", 4.0 * ratio.error / ratio.mean, 0.012);
         }
@@ -363,7 +362,7 @@ CLAIM(density_alone_transmits)
 
 static const uint32_t column_rules[] = {SONJECT_COLUMNS_PAPER, SONJECT_COLUMNS_FOCUSED};
 
-/* Energy of two interactions between a sphere that lies in the middle and the seabed around it. */
+/* Returns the energy of two interactions between a sphere in the middle and the seabed about it. */
 static struct estimate chain_energy(struct sea *sea, uint32_t column_rule, uint64_t first_seed)
 {
     static const struct ranges all = {0, 0.0, 0.0};
@@ -384,9 +383,9 @@ static void expect_ratio(const char *what, struct estimate one, struct estimate 
     expect_below("its 4 standard errors", 4.0 * ratio.error / expected, 0.03);
 }
 
-/* Around the sphere the water is straight: what happens there is what happens in straight water to
- * a sonar from which sound comes at the same angle with the same curvature. Only what reaches the
- * place, and what comes home, is another. */
+/* Rays around the sphere are straight. Chains there are those of straight water with a sonar whose
+ * sound comes at the same angle with the same curvature. Only the energy that reaches the place,
+ * and that comes home, differs. */
 CLAIM(chains_scale_with_the_ray_tube)
 {
     for (size_t i = 0; i < 4; i++) {

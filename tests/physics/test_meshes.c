@@ -1,6 +1,6 @@
-/* Meshes against the shapes that they stand for: glints of facets by physical optics, energies and
- * shadows, plates as large as their facets, sheets with two sides, smooth surfaces that coarse
- * facets stand for; one mesh shown by several objects. */
+/* Meshes compared with the shapes that they stand for: glints of facets by physical optics,
+ * energies and shadows, plates as large as their facets, sheets with two sides, coarse facets of
+ * smooth surfaces; and one mesh shown by several objects. */
 #include "../kernel/mesh_samples.h"
 #include "sea.h"
 
@@ -26,11 +26,11 @@ enum ball {
     MESH
 };
 
-/* Facets of 90 deg/128: they lie up to BALL (0.0123 rad)^2 / 6 = 6 um, at the middles of the
- * octahedron's faces four times that, under the sphere. */
+/* Facets of 90 deg/128. They lie up to BALL (0.0123 rad)^2 / 6 = 6 um under the sphere, and four
+ * times as much at the middles of the octahedron's faces. */
 #define SUBDIVISIONS 7
 
-/* Its lowest point at a height. */
+/* Adds a ball with its lowest point at a height. */
 static sonject_object_params *add_ball(struct sea *sea, enum ball kind, int subdivisions,
                                        double height)
 {
@@ -54,7 +54,7 @@ static struct sea *open_ball(enum ball kind, int subdivisions)
     return sea;
 }
 
-/* In the pulse's band: out of it, cells of other sizes leave other echoes. */
+/* Compares in the pulse's band. Outside it, cells of other sizes leave other echoes. */
 static double difference_db(const struct sea *sea, struct line one, const struct line *other)
 {
     const double energy = line_energy_in_band(sea, other);
@@ -62,8 +62,8 @@ static double difference_db(const struct sea *sea, struct line one, const struct
     return decibels_of_energy(line_energy_in_band(sea, &one) / energy);
 }
 
-/* Facets as fine as a sphere's glint wants have its level and phase; coarse ones, some wavelengths
- * wide, do not, but converge as their sagitta, which falls with the square of their width. */
+/* Facets fine enough for a sphere's glint have its level and phase. Coarse ones, some wavelengths
+ * wide, have not, but converge as their sagitta, which falls with the square of their width. */
 CLAIM(facets_converge_to_the_sphere)
 {
     double range, at, last = INFINITY;
@@ -80,15 +80,15 @@ CLAIM(facets_converge_to_the_sphere)
         last = difference;
         if (subdivisions < 7)
             continue;
-        /* depth of 24 um x 2 ways: 1.2 degrees of phase; both have cells that leave -39 dB */
+        /* a depth of 24 um x 2 ways is 1.2 degrees of phase; both have cells that leave -39 dB */
         expect_close("level, dB", level, 0.0, 0.05);
         expect_close("range, mm", 1e3 * (at - range), 0.0, 0.5);
         expect_below("facets less the sphere, dB", difference, -30.0);
     }
 }
 
-/* The same rays meet the ball and what stands for it; energies differ by less than the facets'
- * depth over the radius, 1e-4, and by the few rays between both outlines. */
+/* Rays that meet sphere and mesh are the same. Energies differ by less than the facets' depth over
+ * the radius, 1e-4, and by the few rays between both outlines. */
 CLAIM(rough_balls_are_lit_like_the_sphere)
 {
     struct tile_sums sums[2];
@@ -104,10 +104,9 @@ CLAIM(rough_balls_are_lit_like_the_sphere)
     }
 }
 
-/* A box of length x width x height with one upper corner cut away: nothing of it is like its image
- * in a mirror. Half a turn about the upright takes a view to starboard into one to port along the
- * reverse track, where a heading h is pi - h: both show the same. A mirrored box would return 3 %
- * less. */
+/* A box with one upper corner cut away is unlike its mirror image. Half a turn about the vertical
+ * takes a view to starboard into one to port along the reverse track, where a heading h is pi - h.
+ * So both show the same. A mirrored box would return 3 % less. */
 CLAIM(both_sides_show_the_same)
 {
     static const double positions[][3] = {{-0.5, -0.2, -0.1}, {0.5, -0.2, -0.1}, {0.5, 0.2, -0.1},
@@ -134,17 +133,17 @@ CLAIM(both_sides_show_the_same)
 
 /* ---- plates ---- */
 
-/* The seabed sends all sound on. */
+/* Makes the seabed a mirror that reflects all sound. */
 static void lay_mirror(struct sea *sea)
 {
     set_mirror(&sea->seabed->forward, 1.0);
 }
 
-/* Twelve facets of many wavelengths are the box: the same rays meet it, and only single precision
- * and the rays at its edges differ. Once a face is seen straight on. */
+/* Twelve facets of many wavelengths look like the box. The same rays meet both, so only single
+ * precision and the rays at the edges differ. Once a face is seen straight on. */
 CLAIM(a_box_of_facets_is_the_box)
 {
-    /* edges along the track have finer cells on a box, and not on a mesh */
+    /* no edge lies along the track, where a box has finer cells and a mesh has not */
     static const double poses[][3] = {{0.3, 0.0, -0.25}, {-0.5, 0.1, 0.0}, {0.9, 0.3, 0.4}};
     for (size_t pose = 0; pose < COUNT(poses); pose++) {
         const struct image *images[2];
@@ -174,7 +173,7 @@ CLAIM(a_box_of_facets_is_the_box)
     }
 }
 
-/* A square that faces the sonar, or turns its back to it, as a mesh; or (2) the plate itself. */
+/* Returns the image of a plate: as a mesh facing the sonar (0) or away (1), or as the shape (2). */
 static const struct image *image_of_sheet(int kind, bool is_rough)
 {
     static const double positions[][3] = {
@@ -196,8 +195,8 @@ static const struct image *image_of_sheet(int kind, bool is_rough)
     return sea_image(sea);
 }
 
-/* Mirrors and chains too find both sides: the same rays as the plate's, but for rays through the
- * edges: 2 m of them against cells of some mm in 0.24 m^2. */
+/* Mirrors and chains find both sides, too. The same rays meet sheet and plate, but for rays through
+ * the edges: 2 m of edges, with cells of some mm in 0.24 m^2. */
 CLAIM(sheets_reflect_on_both_sides)
 {
     for (int i = 0; i < 4; i++) {
@@ -228,8 +227,8 @@ enum sphere_kind {
 };
 static const char *const kind_names[] = {"sphere", "flat facets", "smooth facets"};
 
-/* Of a unit sphere's facets as large together as the sphere: convex bodies of equal surface show
- * the same area on average over all directions (Cauchy). */
+/* Returns the radius at which a unit sphere's facets together have the sphere's surface. Convex
+ * bodies of equal surface show the same area on average over all directions (Cauchy). */
 static double radius_of_equal_surface(const struct mesh_sample *sample)
 {
     double surface = 0.0;
@@ -246,7 +245,7 @@ static double radius_of_equal_surface(const struct mesh_sample *sample)
     return sqrt(4.0 * PI / surface);
 }
 
-/* A Lambert sphere of 128 facets (22.5 degrees), or the shape itself. */
+/* Opens a Lambert sphere of 128 facets (22.5 degrees), or the shape itself. */
 static struct sea *open_lambert_sphere(enum sphere_kind kind, double range)
 {
     struct mesh_sample sample;
@@ -264,11 +263,10 @@ static struct sea *open_lambert_sphere(enum sphere_kind kind, double range)
     return sea;
 }
 
-/* A surface shows a ray a cosine c, which on a sphere falls from 1 by the depth over the radius,
- * and of exponents 1 and 2 returns c and 3/2 c^3: the ratio tells c, however echoes are shared
- * between bins; rays are the same for all. Returns its rms error over cells of a strip and a bin of
- * range, weighed by their energy, and *brightness, the sum of what is shown over that of what
- * should be. */
+/* Returns the rms error of the cosine c that a surface shows to rays, over cells of a strip and a
+ * bin of range, weighted by energy. On a sphere c falls from 1 by the depth over the radius. With
+ * exponents 1 and 2 a surface returns c and 3/2 c^3, so the ratio tells c, however echoes are
+ * shared between bins. Rays are the same for all. *brightness: shown c over expected c, summed. */
 static double shading_error(enum sphere_kind kind, double *brightness)
 {
     struct strips tiles[2];
@@ -305,12 +303,12 @@ CLAIM(smooth_normals_shade_like_the_sphere)
         error[kind] = shading_error(kind, &brightness);
     expect_below("of the sphere itself, half a bin over its radius", error[EXACT], 0.0052);
     expect_below("smooth over flat", error[SMOOTH] / error[FLAT], 1.0 / 3.5);
-    /* what is left of it: facets up to 6 mm off the sphere look like 0.02 of its depth */
+    /* the remaining error: facets up to 6 mm off the sphere look like 0.02 of its depth */
     expect_close("brightness", brightness, 1.0, 0.01);
 }
 
-/* A convex body sees nothing of itself, and no more do the facets that stand for one: what there is
- * of two interactions is by way of a seabed that hardly scatters. */
+/* A convex body sees nothing of itself, and neither do the facets that stand for one. All energy of
+ * two interactions comes by way of a seabed that hardly scatters. */
 CLAIM(facets_see_nothing_of_themselves)
 {
     double share[3];
@@ -327,8 +325,8 @@ CLAIM(facets_see_nothing_of_themselves)
     }
 }
 
-/* Energy by column of paths by way of the seabed's mirror there or back: the sphere is lit from 75
- * degrees beside where it is seen from. */
+/* Gives the energy, by column, of paths by the seabed's mirror there or back. The sphere is lit
+ * from 75 degrees beside the direction from which it is seen. */
 static void mirrored_energy(enum sphere_kind kind, double columns[COLUMNS])
 {
     memset(columns, 0, COLUMNS * sizeof *columns);
@@ -360,12 +358,12 @@ CLAIM(facets_throw_no_shadows)
     expect_close("energy where light fades out, over the sphere's", tails[1] / tails[0], 1.0, 0.4);
 }
 
-/* ---- inside ---- */
+/* ---- shared by several objects ---- */
 
 #define RINGS 3
 
-/* Rings in different poses; each object shows a mesh of its own, or all the first one. Returns the
- * bytes of what the device is told of objects. */
+/* Lays rings in different poses. Each object shows a mesh of its own, or all show the first one.
+ * Returns the bytes of the device's buffer of objects. */
 static size_t lay_rings(struct sea *sea, bool is_shared)
 {
     struct rough_trace trace;
@@ -393,7 +391,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     return bytes;
 }
 
-/* One mesh shown by several objects: the same bits as a mesh for each, and one copy of it. */
+/* One mesh shown by several objects gives the bits of a mesh for each, and is stored once. */
 CLAIM(a_mesh_of_many_objects_is_held_once)
 {
     const struct image *images[2];

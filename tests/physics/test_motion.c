@@ -1,5 +1,5 @@
-/* Images of a synthetic aperture whose sonar left its track, and those of a measured cross-range
- * response. */
+/* Images of a synthetic aperture whose sonar leaves its track, and images with a measured
+ * cross-range response. */
 #include "scene/motion_response.h"
 #include "sea.h"
 
@@ -11,8 +11,8 @@
 #define MIDDLE     80
 #define LEVEL_DB   0.2
 
-/* A ball far smaller than any resolution over the middle row, seen with lobes at -43 dB, or (where
- * these would move an echo at -20 dB by 0.13 resolutions) at -70 dB. */
+/* Opens a ball, far smaller than any resolution, over the middle row. Side lobes are at -43 dB, or
+ * at -70 dB where the former would move an echo at -20 dB by 0.13 resolutions. */
 static struct sea *open_aperture(bool has_low_lobes)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -34,7 +34,7 @@ static const struct point_response *response_of(const struct sea *sea)
     return &sea->bench->tracer.response;
 }
 
-/* The along-track cut through the ball, in the column that is brightest, over a value. */
+/* Returns the along-track cut through the ball, in the brightest column, over `straight`. */
 static const double complex *cut_through(struct sea *sea, double complex straight)
 {
     double complex *cut = claim_memory(ROWS, sizeof *cut);
@@ -52,7 +52,7 @@ static const double complex *cut_through(struct sea *sea, double complex straigh
     return cut;
 }
 
-/* Its middle on the straight track. */
+/* Returns the middle of the cut on a straight track. */
 static double complex middle_of(struct sea *sea)
 {
     return cut_through(sea, 1.0)[MIDDLE];
@@ -63,7 +63,7 @@ static double cosine_of_grazing(const struct sea *sea)
     return cos(sea_grazing(sea, sea_range(sea, 0.5 * (COLUMNS - 1))));
 }
 
-/* Height and place of the highest point of a parabola through the largest of some rows. */
+/* Returns the height of a parabola through the largest of some rows, and its place in *row. */
 static double peak_between(const double complex *cut, size_t first, size_t last, double *row)
 {
     size_t top = first;
@@ -78,7 +78,7 @@ static double peak_between(const double complex *cut, size_t first, size_t last,
     return b - 0.25 * (a - c) * shift;
 }
 
-/* Where lobe m of the cut lies, and its level. */
+/* Compares the place of lobe m of the cut, and its level. */
 static void expect_lobe(const double complex *cut, double m, double spacing, double level)
 {
     const double expected = MIDDLE + m * spacing / SPACING;
@@ -90,8 +90,8 @@ static void expect_lobe(const double complex *cut, double m, double spacing, dou
     expect_close("level of the lobe, dB", decibels_of_amplitude(peak / level), 0.0, LEVEL_DB);
 }
 
-/* exp(i beta sin) is the sum of Bessel functions J_m(beta) of its harmonics; each moves W by
- * wavelength range / (2 wavelength of the sway). */
+/* exp(i beta sin) is a sum of harmonics of the amplitudes J_m(beta), Bessel functions. Each moves W
+ * by wavelength range / (2 wavelength of the sway) from the one before. */
 CLAIM(a_sway_makes_paired_echoes)
 {
     const double beta = 0.2, away = 1.5; /* J0 0.99002497, J1 0.09950083 */
@@ -107,7 +107,7 @@ CLAIM(a_sway_makes_paired_echoes)
         expect_lobe(cut, m, spacing, m == 0 ? 0.99002497 : 0.09950083);
 }
 
-/* The response that motion gives a row of the image, over places so far apart along the track. */
+/* Returns the response that motion gives a row of the image, at places `spacing` apart. */
 static const double complex *row_of_response(struct sea *sea, double spacing, double row, int reach,
                                              bool is_all_around)
 {
@@ -126,19 +126,19 @@ static const double complex *row_of_response(struct sea *sea, double spacing, do
     return values;
 }
 
-/* A constant yaw makes the sway a sawtooth, as long as the pings' advance A: phases of period A,
- * whose harmonics are c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by
- * -m wavelength range / 2A, the lobes of a grating of this spacing; of the two beside the main one,
- * that on the side where the array looks is the higher. They leave the beam of elements of 2 delta,
- * whose zero is where lobe A/delta lies; delta is such that each lobe lies at a zero of all others.
- * The beam leaves the mean over |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A: for whole t
- * that of v^2 / (v + t)^2. */
+/* A constant yaw makes the sway a sawtooth, as long as the pings' advance A. The phases have the
+ * period A and the harmonics c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by -m
+ * wavelength range / 2A, to the lobes of a grating of this spacing. The higher one of the two
+ * beside the main lobe is on the side where the array looks. Lobes leave the beam of elements of 2
+ * delta, whose zero is where lobe A/delta lies. delta is such that each lobe lies at a zero of all
+ * others. The beam leaves the mean over |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A. For
+ * whole t that is the mean of v^2 / (v + t)^2. */
 CLAIM(lobes_leave_the_elements_beam)
 {
     enum {
         PINGS_ADVANCE = 8, /* resolutions */
-        APART = 5,         /* of lobes, resolutions */
-        STRIPS = 2,        /* in a resolution */
+        APART = 5,         /* spacing of lobes, resolutions */
+        STRIPS = 2,        /* strips in a resolution */
         LAST = 8,
         REACH = LAST * APART * STRIPS
     };
@@ -147,7 +147,7 @@ CLAIM(lobes_leave_the_elements_beam)
         double left;
     } lobes[] = {
         {-8, 0.1361087}, /* 1 - 2 ln 3 + 4/3 */
-        {-1, 0.9732098}, /* by the midpoint rule, as is the next but one */
+        {-1, 0.9732098}, /* by the midpoint rule, and so for lobe 4 */
         {0, 1.0},        {4, 0.6380988}, {8, 0.1361087},
     };
     const double steps = 0.3;
@@ -172,8 +172,8 @@ CLAIM(lobes_leave_the_elements_beam)
     }
 }
 
-/* What elements of two resolutions hear of a point, over what they hear of the pixel `distance`
- * from it: the mean over aspects under Hamming's weights. */
+/* Returns the energy that elements of two resolutions hear of a point, over that of the pixel
+ * `distance` from it: the mean over aspects with Hamming's weights. */
 static double heard_share(const struct sea *sea, double distance)
 {
     enum {
@@ -190,7 +190,7 @@ static double heard_share(const struct sea *sea, double distance)
     return sum;
 }
 
-/* W of a row by its definition, over the straight one's peak: the mean over aspects. */
+/* Returns W of a row by its definition, the mean over aspects, over the peak of the straight W. */
 static double complex moved_response(const struct sea *sea, double row, double distance,
                                      double (*sway)(double))
 {
@@ -241,7 +241,7 @@ static double yaw_of_ping(double x)
     return 8e-3 * sin(2.0 * PI * x / 1.7 + 0.4) - 2e-3;
 }
 
-/* That yaw, which each ping has anew, as the sway of its phase centres. */
+/* Returns the sway of phase centres by that yaw, of which each ping has its own. */
 static double sway_of_a_yaw(double x)
 {
     const double ping = floor(x / ADVANCE + 0.5) * ADVANCE;
@@ -258,8 +258,8 @@ static void give_yaw(struct sea *sea)
     sea->motion->yaws[0].phase_rad = 0.4;
 }
 
-/* The cut is the mean over aspects with the sway's phase, within what two strips of 3 mm that hold
- * the ball make of it; it is not what it was. */
+/* Compares the cut with the mean over aspects with the sway's phase. The tolerance is for the two
+ * strips of 3 mm that hold the ball. The cut's peak must be lower than `highest`. */
 static void expect_moved(struct sea *sea, double complex straight, double (*sway)(double),
                          double highest)
 {
@@ -285,8 +285,8 @@ CLAIM(sway_and_yaw_turn_each_aspects_phase)
     expect_moved(sea, straight, sway_of_a_yaw, 0.95);
 }
 
-/* From the transmitter in the array's middle to a point of the seabed, at x along the track, and
- * back to the hydrophone at e on the array. */
+/* Returns the way from the transmitter in the array's middle to a point of the seabed, at x along
+ * the track, and back to the hydrophone at e on the array. */
 static double way_of(const struct sea *sea, double ping, double e, double yaw, double x)
 {
     const double range = response_of(sea)->motion_range_m;
@@ -297,8 +297,8 @@ static double way_of(const struct sea *sea, double ping, double e, double yaw, d
            sqrt(along * along + across * across + height * height);
 }
 
-/* Amplitude of a point, `distance` before the pixel, from all hydrophones of all pings of the
- * aperture, focused as if the array had kept its heading. Each hears alike all around. */
+/* Returns the amplitude of a point `distance` before the pixel, from all hydrophones of all pings
+ * of the aperture, focused as if the array had kept its heading. Each hears alike all around. */
 static double heard_amplitude(const struct sea *sea, double pixel, double distance)
 {
     enum {
@@ -316,7 +316,7 @@ static double heard_amplitude(const struct sea *sea, double pixel, double distan
             const double sine = sin(atan((ping + 0.5 * e - pixel) / range));
             if (fabs(sine) > steepest)
                 continue;
-            /* even in the sine */
+            /* weights are even in the sine */
             const double weight =
                 (0.54 + 0.46 * cos(PI * sine / steepest)) * pow(1.0 - sine * sine, 1.5);
             const double way = way_of(sea, ping, e, yaw_of_ping(ping), pixel - distance) -
@@ -327,8 +327,7 @@ static double heard_amplitude(const struct sea *sea, double pixel, double distan
     return cabs(sum) / total;
 }
 
-/* The response that yaw gives a row is what hydrophones at their true places would make of it, but
- * for their beam. */
+/* Yaw gives a row the response of hydrophones at their true places, but for their beam. */
 CLAIM(yaw_is_what_hydrophones_hear)
 {
     const int reach = 100;
@@ -344,7 +343,7 @@ CLAIM(yaw_is_what_hydrophones_hear)
             straight = fmax(straight, fabs(heard - sea_window(sea, j * SPACING)));
         }
     }
-    assert_true(straight > 0.1); /* a straight track's would not do */
+    assert_true(straight > 0.1); /* a straight track's response would fail */
     /* hydrophones 4 mm apart; at x beside the pixel ranges are curved: k x^2 aspect^2 / r */
     expect_below("response less what hydrophones hear", worst, 0.004);
 }
@@ -368,8 +367,8 @@ static void expect_level_of_seabed(struct sea *sea)
                  0.0, 0.04);
 }
 
-/* Neither the energy of a row's response nor the seabed's level changes, but for what the elements'
- * beam leaves out. */
+/* Motion changes neither the energy of a row's response nor the seabed's level, but for the share
+ * that the elements' beam leaves out. */
 CLAIM(motion_keeps_energy)
 {
     const int reach = 3000;
@@ -393,7 +392,7 @@ CLAIM(motion_keeps_energy)
     expect_level_of_seabed(sea);
 }
 
-/* Starboard is port, reversed: the bow is at the other end; pings lie at the same places. */
+/* Starboard is port reversed. The bow is at the other end, and pings lie at the same places. */
 CLAIM(starboard_is_port_reversed)
 {
     const double complex *cuts[2];
@@ -412,8 +411,8 @@ CLAIM(starboard_is_port_reversed)
     expect_below("port less starboard", worst, 1e-3);
 }
 
-/* Sway that turns sound by more than the aspects, so that no response is long enough; yaw whose
- * pings are too many; motion that is too fast to be followed. */
+/* Motion is refused if its sway turns sound by more than the aspects, so that no response is long
+ * enough, if its yaw has too many pings, or if it is too fast to be followed. */
 CLAIM(motion_that_is_refused)
 {
     static const double x[] = {0.0, 1.0}, yaw[] = {1e-3, 2e-3};
@@ -437,7 +436,7 @@ CLAIM(motion_that_is_refused)
     EXPECT_REFUSED(sea, "steps of the sway", sea_check_response(sea));
 }
 
-/* The random sway's autocorrelation, by an average over seeds. */
+/* The random sway has its autocorrelation, on an average over seeds. */
 CLAIM(a_random_sways_autocorrelation)
 {
     enum {
@@ -463,7 +462,7 @@ CLAIM(a_random_sways_autocorrelation)
     }
 }
 
-/* A response that is neither even nor real, as a table. */
+/* Returns a response that is neither even nor real, for a table. */
 static double complex measured(double x)
 {
     const double y = x / RESOLUTION;
@@ -487,7 +486,8 @@ CLAIM(a_measured_response_is_the_images)
     const double complex *cut = cut_through(sea, straight);
     for (int row = 0; row < ROWS; row++)
         worst = fmax(worst, cabs(cut[row] - measured((row - MIDDLE) * SPACING) / peak));
-    expect_below("cut less the table", worst, 0.02); /* strips of 3 mm, a cubic of ten samples */
+    expect_below("cut less the table", worst,
+                 0.02); /* for strips of 3 mm and a cubic of ten samples */
     expect_close("energy width, resolutions",
                  cross_range_energy_width(sea_response(sea), RANGE) / RESOLUTION, sqrt(PI), 1e-3);
     expect_level_of_seabed(sea);

@@ -1,5 +1,5 @@
-/* Echoes of several smooth faces one after the other, against closed forms and the double integral
- * of physical optics (multibounce_reference.h). Levels are systematic: 0.2 dB. */
+/* Echoes of several smooth faces in turn, compared with closed forms and the double integral of
+ * physical optics (multibounce_reference.h). Levels have a systematic tolerance of 0.2 dB. */
 #include "multibounce_reference.h"
 
 #define ROWS       101
@@ -17,7 +17,7 @@ static struct sea *open_at(uint32_t interactions)
     return sea;
 }
 
-/* A rigid plate, as part 0, 1, ..., to be put where it is wanted. */
+/* Adds a rigid plate, as part 0, 1, ..., which the caller then puts in its place. */
 static void add_plate(struct sea *sea, double length, double width)
 {
     sea_add(sea, SHAPE_PLANE, length, width, 0.0)->burial_m = -1.0;
@@ -30,7 +30,7 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Unit vectors at the scene's middle: to the sonar, across that upwards, and along the track. */
+/* The scene's middle, with unit vectors to the sonar, upwards across that, and along the track. */
 struct sight {
     double middle[3], to_sonar[3], up[3], along[3];
     double range;
@@ -53,16 +53,15 @@ static struct sight sight_of(const struct sea *sea, double height)
     return sight;
 }
 
-/* a u + b v */
+/* out = a u + b v */
 static void mix(double a, const double u[3], double b, const double v[3], double out[3])
 {
     for (int k = 0; k < 3; k++)
         out[k] = a * u[k] + b * v[k];
 }
 
-/* Two plates, `wide` from the edge and `length` along it, that open towards the sonar. The edge
- * runs along the track or, upright, across it; the bisector is `off` rad from the sonar about the
- * edge. */
+/* Lays two plates that open towards the sonar, `wide` from their edge and `length` along it. The
+ * edge runs along the track or, upright, across it. The bisector is `off` rad from the sonar. */
 static struct sight lay_dihedral(struct sea *sea, double wide, double length, bool is_upright,
                                  double off)
 {
@@ -82,7 +81,7 @@ static struct sight lay_dihedral(struct sea *sea, double wide, double length, bo
     return sight;
 }
 
-/* What further interactions bring to the glints of some parts together, at a range. */
+/* Returns the echo that further interactions add to the glints of some parts, at a range. */
 static double complex further_echo(struct sea *sea, uint32_t first_part, uint32_t last_part,
                                    double range)
 {
@@ -105,8 +104,8 @@ static void expect_echo(double complex measured, double complex expected)
     expect_close("phase off the reference, rad", carg(measured / expected), 0.0, PHASE);
 }
 
-/* sigma = 2 a^2 b^2 / lambda^2 on the bisector, half the amplitude from each plate first, and the
- * phase of an aperture that returns what comes: -i. Off the bisector less of each plate lights the
+/* On the bisector sigma = 2 a^2 b^2 / lambda^2, with half the amplitude from each plate first. The
+ * phase is -i, that of an aperture that returns all sound. Off the bisector less of each lights the
  * other. */
 CLAIM(a_dihedral)
 {
@@ -145,8 +144,9 @@ CLAIM(a_dihedral)
     }
 }
 
-/* However little two faces reflect, they echo in proportion. Of 2 * 10^4 rays each brings some 50
- * quanta, rounded by chance: four times half a quantum over 50 and the root of their number. */
+/* Two faces echo in proportion, however little they reflect. 2 * 10^4 rays bring some 50 quanta
+ * each, rounded by chance. The tolerance is four times half a quantum over 50, and over the root of
+ * the number of rays. */
 CLAIM(weak_faces_echo_in_proportion)
 {
     struct sea *sea = open_at(2);
@@ -159,8 +159,8 @@ CLAIM(weak_faces_echo_in_proportion)
     expect_close("phase of weak faces, rad", carg(weak / strong), 0.0, 3e-4);
 }
 
-/* Lays a first part at the middle that sends sound along `onward` to a plate, part 1, `distance`
- * away, and turns that so that it sends it home. Returns the normal that the first part needs. */
+/* Puts a plate, part 1, `distance` away from the middle along `onward`, so that it sends the sound
+ * home. Gives the normal with which a first part at the middle sends sound along `onward`. */
 static void lay_plate(struct sea *sea, const struct sight *sight, const double onward[3],
                       double distance, double normal_of_first[3])
 {
@@ -168,7 +168,7 @@ static void lay_plate(struct sea *sea, const struct sight *sight, const double o
     mix(1.0, sight->to_sonar, 1.0, onward, normal_of_first);
     mix(1.0, sight->to_sonar, -1.0, onward, normal);
     for (int k = 0; k < 3; k++) {
-        normal_of_first[k] *= sqrt(0.5); /* onward is square to the sight */
+        normal_of_first[k] *= sqrt(0.5); /* onward is at right angles to the sight */
         normal[k] *= sqrt(0.5);
     }
     cross(sight->to_sonar, onward, aside);
@@ -177,7 +177,7 @@ static void lay_plate(struct sea *sea, const struct sight *sight, const double o
     sea_put(sea, 1, centre, aside, own_y);
 }
 
-/* A sphere beside a plate: geometrical optics spreads the sound that comes to the plate. */
+/* A sphere spreads the sound that comes to a plate beside it, by geometrical optics. */
 CLAIM(a_sphere_and_a_plate)
 {
     const double radius = 0.15;
@@ -207,7 +207,8 @@ CLAIM(a_sphere_and_a_plate)
     }
 }
 
-/* The inner side of a tube gathers sound on a line before the plate: -pi/2. */
+/* The inner side of a tube focuses sound on a line, before or beyond the plate. A line before the
+ * plate turns the phase by -pi/2. */
 CLAIM(a_caustic)
 {
     static const double radii[] = {
@@ -259,7 +260,7 @@ static void put_mirror(struct sea *sea, uint32_t part, const double centre[3], c
     sea_put(sea, part, centre, aside, own_y);
 }
 
-/* From one plate by way of the seabed to the other. */
+/* Sound goes from one plate by way of the seabed to the other. */
 CLAIM(the_seabed_between_two_faces)
 {
     struct sea *sea = open_at(3);
@@ -285,8 +286,7 @@ CLAIM(the_seabed_between_two_faces)
                 -0.7 * multibounce_echo(sea, &way, &two, &one, SPACING, range));
 }
 
-/* By way of the seabed to two plates and straight home, and the reverse, which is what is traced.
- */
+/* Sound goes by way of the seabed to two plates and straight home. The reverse is traced. */
 CLAIM(the_seabed_before_two_faces)
 {
     for (uint32_t interactions = 2; interactions <= 3; interactions++) {
@@ -312,14 +312,14 @@ CLAIM(the_seabed_before_two_faces)
         const double complex measured = further_echo(sea, 1, 1, range);
         if (interactions == 3)
             expect_echo(measured, expected);
-        else /* but for what plates return by way of the seabed alone */
+        else /* plates return a little by way of the seabed alone */
             expect_below("without a third interaction", cabs(measured / expected), 0.05);
     }
 }
 
-/* An upright edge focuses all of the corner on its own pixel; of one along the track each pixel has
- * what lies within the resolution; each object has the half that meets it first. In the columns of
- * the first hit the halves of an upright corner lie on its two sides. */
+/* All of a corner with an upright edge is focused on the edge's own pixel. With an edge along the
+ * track each pixel has the part within the resolution. Each object has the half that meets it
+ * first. In the columns of the first hit the halves of an upright corner lie on its two sides. */
 CLAIM(a_corner_in_the_image)
 {
     const double a = 0.2;
@@ -343,14 +343,14 @@ CLAIM(a_corner_in_the_image)
     sea->injection->column_rule = SONJECT_COLUMNS_PAPER;
     lay_dihedral(sea, 0.3, 0.15, true, 0.0);
     const struct image *image = sea_image(sea);
-    for (int row = -4; row <= 4; row += 8) { /* of 0.21 m, on the face that sound meets there */
+    for (int row = -4; row <= 4; row += 8) { /* 0.1 m to each side, of 0.21 m */
         const size_t at = (size_t)(ROWS / 2 + row) * COLUMNS + COLUMNS / 2;
         expect_close("pixel, dB re 1 m^2", decibels_of_amplitude(cabs(image->target[at])),
                      decibels_of_amplitude(0.15 * 0.025 / WAVELENGTH), LEVEL_DB);
     }
 }
 
-/* Not a bit changes where sound cannot meet a second smooth face: a convex part alone, or beside a
+/* No bit changes where sound cannot meet a second smooth face: with a convex part alone or beside a
  * rough one, or with one interaction. */
 CLAIM(no_second_face_changes_nothing)
 {

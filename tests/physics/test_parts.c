@@ -1,6 +1,5 @@
-/* Objects of parts: their union is what a single shape of the same outline is. Rays of the two
- * differ, so pictures agree as two seeds of the same do; smooth surfaces agree within the error of
- * their sampling. */
+/* The union of an object's parts looks like a single shape of the same outline. Rays of the two
+ * differ, so images agree as two seeds of one do. Smooth surfaces agree within sampling errors. */
 #include "sea.h"
 
 #define ROWS    161
@@ -8,12 +7,12 @@
 #define RANGE   40.0
 #define SEEDS   4
 
-/* Of rays on the wavefront, m. */
+/* The wavelength and the size of a ray's cell on the wavefront, m. */
 #define WAVELENGTH 0.015
 #define CELL       (WAVELENGTH / 8.0)
-#define GRAZING    0.245 /* rad, of the sound that comes to the objects, about */
+#define GRAZING    0.245 /* rad, about that of the sound at the objects */
 
-/* An object of one shape, or of parts: then width and height are those of its boxes. */
+/* Adds an object of one shape or of parts. The width and height of parts are those of its boxes. */
 static sonject_object_params *add(struct sea *sea, enum shape_kind shape, double length,
                                   double width, double height, double diameter)
 {
@@ -22,7 +21,7 @@ static sonject_object_params *add(struct sea *sea, enum shape_kind shape, double
     return object;
 }
 
-/* A part of the first object, with the object's surface, level in it unless turned. */
+/* Adds a part of the first object, with the object's surface and level within it. */
 static sonject_object_params *add_part(struct sea *sea, enum shape_kind shape, double length,
                                        double diameter, double along, double across, double up)
 {
@@ -60,7 +59,7 @@ static void build_box(struct sea *sea, bool of_parts)
     add_part(sea, SHAPE_BOX, 0.3, 0.0, 0.35, 0.0, 0.0);
 }
 
-/* Two spheres in one place, or a sphere that lies in another: the second touches no sound. */
+/* Two spheres in one place. No sound meets the second, here and in build_hidden_sphere. */
 static void build_spheres(struct sea *sea, bool of_parts)
 {
     add(sea, of_parts ? SHAPE_PARTS : SHAPE_SPHERE, 0.0, 0.0, 0.0, 0.6);
@@ -79,8 +78,8 @@ static void build_hidden_sphere(struct sea *sea, bool of_parts)
     add_part(sea, SHAPE_SPHERE, 0.0, 0.4, 0.05, -0.05, 0.02);
 }
 
-/* A lopsided object on the starboard side, and one of the other hand on the port side. Pose is
- * counted in the image, where they look the same; what is left of the nose is right of it there. */
+/* A lopsided object on the starboard side, or its mirror image on the port side. Poses are counted
+ * in the image, where both look the same. Parts left of one nose are right of the other. */
 static void build_lopsided(struct sea *sea, bool is_starboard)
 {
     const double hand = is_starboard ? 1.0 : -1.0;
@@ -101,7 +100,7 @@ static void build_lopsided(struct sea *sea, bool is_starboard)
 #define BOX_TOP    0.3
 #define RADIUS     0.25
 #define TOP        0.8
-#define SUNK       0.1 /* of the cylinder into the box */
+#define SUNK       0.1 /* depth of the cylinder in the box */
 
 /* Rings of vertices from the bottom to the top, SECTORS each, then the middles of both ends. */
 enum ring {
@@ -130,7 +129,7 @@ static void put_triangle(uint32_t **corners, uint32_t a, uint32_t b, uint32_t c)
 static void build_union(struct sea *sea, bool is_mesh)
 {
     add(sea, is_mesh ? SHAPE_MESH : SHAPE_PARTS, 0.0, 2.0 * HALF_WIDTH, BOX_TOP, 2.0 * RADIUS);
-    if (!is_mesh) { /* a mesh counts from its middle, and so do they */
+    if (!is_mesh) { /* a mesh has its origin in its middle, and so have the parts */
         const double length = TOP - BOX_TOP + SUNK;
         const double centre[3] = {0.0, 0.0, 0.5 * (TOP - length)}, upright[3] = {0, 0.5 * PI, 0};
         add_part(sea, SHAPE_BOX, 2.0 * HALF_WIDTH, 0.0, 0.0, 0.0, 0.5 * (BOX_TOP - TOP));
@@ -168,7 +167,7 @@ static void build_union(struct sea *sea, bool is_mesh)
     sea_add_mesh(sea, &mesh, 1.0, 0.0);
 }
 
-/* Of the object and its parts. */
+/* Makes the object and its parts rough. */
 static void make_all_rough(struct sea *sea)
 {
     sonject_material_params material = sea_object(sea, 0)->material;
@@ -192,8 +191,7 @@ static const struct image *compute(builder build, bool other, bool is_rough, con
     return sea_image(sea);
 }
 
-/* Energy of targets, or visibility, of an image; rows of a starboard view run against the image's.
- */
+/* Returns a pixel's energy of targets, or its visibility. is_reversed: rows run the other way. */
 static double value_at(const struct image *image, bool is_energy, bool is_reversed, size_t i)
 {
     const size_t at = is_reversed ? (ROWS - 1 - i / COLUMNS) * COLUMNS + i % COLUMNS : i;
@@ -201,9 +199,9 @@ static double value_at(const struct image *image, bool is_energy, bool is_revers
                      : 1.0 - (double)image->lost_energy[at] / image->seabed_energy[at];
 }
 
-/* Pictures of one and of the other, SEEDS each: mean square differences between both over those of
- * two seeds of the same, 1 if they are the same. Some thousand pixels in 16 pairs tell within a few
- * per cent; a joint that shows, or a shadow that is a pixel off, changes it by much more. */
+/* Compares images of both objects, SEEDS each. Mean square differences between both, over those
+ * between seeds of one, are 1 if the objects are the same. Some thousand pixels in 16 pairs tell
+ * within a few per cent. A visible joint, or a shadow that is a pixel off, changes much more. */
 static void expect_same_rough_object(builder build, const double pose[3])
 {
     const struct image *images[2 * SEEDS];
@@ -233,9 +231,10 @@ static void expect_same_rough_object(builder build, const double pose[3])
     }
 }
 
-/* Error of one pixel if all that rays draw by chance came into it: a cell of the wavefront that an
- * edge divides is hit or missed, by 0.29 of its area (a uniform number's deviation) over the
- * wavelength. In truth it spreads over dozens of pixels. outlines: length of the edges, m. */
+/* Compares glints within the error of a pixel that had all of the rays' chance errors. A cell of
+ * the wavefront that an edge divides is hit or missed: 0.29 of its area (a uniform number's
+ * deviation) over the wavelength. In truth these errors spread over dozens of pixels. outlines:
+ * length of the edges, m. */
 static void expect_same_smooth_object(builder build, const double pose[3], double outlines)
 {
     double peak;
@@ -246,12 +245,12 @@ static void expect_same_smooth_object(builder build, const double pose[3], doubl
                  decibels_of_amplitude(0.29 * sqrt(outlines / CELL) * CELL * CELL / WAVELENGTH));
 }
 
-/* Rough, in the first pose, and smooth, in all: any, broadside, and nose to the sonar, where the
- * ends of the cylinder within would mirror the most (two outlines, and four sides of joints, of
- * which a half is seen); a box with a face to the sonar, a long one, with the joint in it, and the
- * nose, behind which the joint lies like another one; a lopsided one, rough; and the mesh of a
- * union, turned about the upright, and tipped: facets of the cylinder are 3 mm wide and lie
- * 0.005 mm within it, 0.004 rad of phase, its edges are 10 m long. */
+/* Objects are rough in the first pose and smooth in all. The capsule lies in any pose, broadside,
+ * and nose to the sonar, where the ends of the cylinder within would mirror the most. Its edges are
+ * two outlines and half of the joints' four sides. The box has a face to the sonar: a long one,
+ * with the joint in it, and the nose, behind which the joint lies like another face. The lopsided
+ * one is rough. The mesh of a union is turned about the vertical, and tipped. Facets of its
+ * cylinder are 3 mm wide and lie 0.005 mm within it, 0.004 rad of phase. Edges are 10 m long. */
 CLAIM(parts_look_like_the_shape_they_make_up)
 {
     const double outline = 2.0 * (LENGTH - DIAMETER) + PI * DIAMETER;
@@ -282,7 +281,7 @@ CLAIM(parts_look_like_the_shape_they_make_up)
     }
 }
 
-/* What a union's parts scatter to one another, its mesh scatters to itself. */
+/* A union's mesh scatters as much to itself as the parts scatter to one another. */
 CLAIM(a_mesh_of_the_union_lights_itself)
 {
     double shares[2][SEEDS];
@@ -291,7 +290,7 @@ CLAIM(a_mesh_of_the_union_lights_itself)
         build_union(sea, i % 2 > 0);
         make_all_rough(sea);
         sea_object(sea, 0)->burial_m = -1.0;
-        sea->seabed->lambert = 1e-6; /* so that it is all from the object to the object */
+        sea->seabed->lambert = 1e-6; /* so that all goes from object to object */
         sea->injection->interactions = 2;
         sea->injection->order_energies = 1;
         sea->injection->seed = (uint64_t)i + 1;
@@ -306,8 +305,8 @@ CLAIM(a_mesh_of_the_union_lights_itself)
     expect_estimate("share of two interactions", mesh, parts.mean, 1e-3 * parts.mean);
 }
 
-/* The second of two parts in one place, and a part within another, add no echo and hide nothing:
- * the first one's rays are those of the object by itself. */
+/* The second of two parts in one place, and a part within another, add no echo and hide nothing.
+ * The first one's rays are those of the object by itself. */
 CLAIM(hidden_parts_change_no_bit)
 {
     static const double level[3] = {0.0, 0.0, 0.0};
@@ -323,8 +322,8 @@ CLAIM(hidden_parts_change_no_bit)
     }
 }
 
-/* A sphere ahead and a box behind that is level as the object is pitched. Bounds are exact but for
- * double precision. */
+/* An object has a sphere ahead and a box behind, which stays level as the object is pitched. Bounds
+ * are exact but for double precision. */
 CLAIM(parts_rest_on_the_seabed)
 {
     for (uint32_t i = 0; i < 6; i++) {

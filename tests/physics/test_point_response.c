@@ -1,6 +1,5 @@
-/* What a point looks like, along the track (W, of the aspects' window) and in range (G, of the
- * pulse): resolution, side lobes, energy, and where it lies between pixels; and that images,
- * seabeds and noise have it. */
+/* The point response of images, seabeds and noise, along the track (W, of the aspects' window) and
+ * in range (G, of the pulse): resolution, side lobes, energy, and place between pixels. */
 #include "sea.h"
 
 #define RANGE      50.0
@@ -8,8 +7,8 @@
 #define RESOLUTION 0.04
 #define QUADRATURE 4000
 
-/* Windows of W, and pulses of G, which is a Gaussian, the transform of a chirp's window, or a
- * table. A half-power width of 0 is not known in closed form. */
+/* Windows of W, and pulses of G. G is a Gaussian, the transform of a chirp's window, or a table. A
+ * half-power width of 0 is not known in closed form. */
 static const struct weighting {
     uint32_t window; /* sonject_response_window or sonject_pulse_window */
     double sidelobe_db;
@@ -29,7 +28,7 @@ static const struct weighting {
       {SONJECT_PULSE_TAYLOR, 35.0, 5, 0.0, -35.0, 0.5},
       {UINT32_MAX, 0.0, 0, 0.0, 0.0, 0.0},
 };
-#define TABLE 3 /* of pulses */
+#define TABLE 3 /* index in pulses */
 
 static void choose_window(struct sea *sea, const struct weighting *shape)
 {
@@ -41,7 +40,7 @@ static void choose_window(struct sea *sea, const struct weighting *shape)
     sea->sonar->along_track_resolution_m = RESOLUTION;
 }
 
-/* Width of the ideal equal-lobe pattern, stretched, where |W|^2 is one half, in resolutions. */
+/* Returns the full width of the stretched ideal equal-lobe pattern at |W|^2 = 1/2, resolutions. */
 static double taylor_width(const struct weighting *shape)
 {
     const double r = pow(10.0, shape->sidelobe_db / 20.0), a = acosh(r) / PI, n = shape->terms;
@@ -49,9 +48,9 @@ static double taylor_width(const struct weighting *shape)
            sqrt(a * a + (n - 0.5) * (n - 0.5));
 }
 
-/* The transform of a weighting over its mean, at z resolutions or cells: 1 and a cosine. The
- * table's has Hann's weights and phases of second and third order, as an uncompensated transducer
- * leaves. */
+/* Returns the transform of a weighting, 1 and a cosine, over its mean, at z resolutions or cells.
+ * The table's has Hann's weights, and phases of 2nd and 3rd order of an uncompensated
+ * transducer. */
 static double complex transform(double cosine, bool is_table, double z)
 {
     double complex sum = 0.0;
@@ -91,7 +90,7 @@ static void choose_pulse(struct sea *sea, const struct weighting *shape)
     if (shape != &pulses[TABLE])
         return;
     sea->pulse->window = SONJECT_PULSE_RECTANGULAR;
-    for (int i = -SIDE; i <= SIDE; i++) { /* the seconds of half the sound speed */
+    for (int i = -SIDE; i <= SIDE; i++) { /* in seconds, at half the sound speed */
         const double complex g = 3.0 * cexp(I * 2.0) * expected_pulse(shape, i / 8.0);
         positions[i + SIDE] = i / 8.0 * CELL / 750.0;
         real_part[i + SIDE] = creal(g);
@@ -100,7 +99,7 @@ static void choose_pulse(struct sea *sea, const struct weighting *shape)
     sea_set_pulse(sea, positions, real_part, imaginary_part, COUNT(positions), true);
 }
 
-/* The sample of largest magnitude, by which a table is divided. */
+/* Returns the sample of largest magnitude, by which a table is divided. */
 static double complex peak_of(const struct weighting *shape)
 {
     double complex peak = expected_pulse(shape, 0.0);
@@ -111,8 +110,8 @@ static double complex peak_of(const struct weighting *shape)
     return peak;
 }
 
-/* Full width where the square of W or G is half of its peak, and its largest value beyond its first
- * minimum, dB. */
+/* Return the full width where the square of W or G is half of its peak, and the largest value
+ * beyond the first minimum, dB. */
 static double half_power_width(const struct sea *sea,
                                double (*response)(const struct sea *, double), double unit)
 {
@@ -154,7 +153,7 @@ CLAIM(windows_are_transforms_of_their_aspects)
                      width, 0.01 * width);
         expect_close("highest side lobe, dB", highest_lobe_db(sea, sea_window, RESOLUTION),
                      windows[i].lobe_db, windows[i].tolerance_db);
-        /* energy by quadrature out to 400 resolutions; a tail 2/(2 pi^2 x) of the rest is left */
+        /* energy by quadrature out to 400 resolutions, which leaves a tail of 2/(2 pi^2 x) */
         double energy = 0.0, inside = 0.0;
         const double step = 0.02 * RESOLUTION,
                      reach = along_track_energy_reach(sea_response(sea), 0.01);
@@ -237,7 +236,7 @@ CLAIM(the_image_of_a_point_is_w_times_g)
         const double peak = cabs(pixels[80 * COLUMNS + 60]);
         double along = 0.0, in_range = 0.0;
         assert_true(peak > 0.0);
-        /* sub-strips of 2.5 mm hold the ball in two of them: W's mean over 2.5 mm of 40 */
+        /* two sub-strips of 2.5 mm hold the ball: W's mean over 2.5 mm of 40 */
         for (size_t row = 0; row < ROWS; row++) {
             const double x = ((double)row - 80.0) * 0.005;
             const double w = 0.5 * (sea_window(sea, x - 0.00125) + sea_window(sea, x + 0.00125));
@@ -267,7 +266,7 @@ CLAIM(the_image_of_a_point_has_the_pulses_phase)
         double norm = 0.0, worst = 0.0;
         for (int column = 0; column < COLUMNS; column++) {
             g[column] = sea_pulse_complex(sea, (column - 60.0) * 0.003 + 0.001);
-            scale += conj(g[column]) * pixels[column]; /* the echo's own, by least squares */
+            scale += conj(g[column]) * pixels[column]; /* by least squares */
             norm += pow(cabs(g[column]), 2.0);
         }
         for (int column = 0; column < COLUMNS; column++)
@@ -279,7 +278,7 @@ CLAIM(the_image_of_a_point_has_the_pulses_phase)
     }
 }
 
-/* A ball moved by a part of a pixel is seen moved by that part: the centroid of its energy. */
+/* A ball that moves by a part of a pixel moves the centroid of its energy by that part. */
 CLAIM(a_point_between_pixels)
 {
     double first[3] = {0.0, 0.0, 0.0}; /* row, column, range */
@@ -309,7 +308,7 @@ CLAIM(a_point_between_pixels)
     }
 }
 
-/* G's autocorrelation at a lag, over its energy. */
+/* Returns G's autocorrelation at a lag, over G's energy. */
 static double complex autocorrelation(const struct sea *sea, double lag)
 {
     const double step = CELL / 40.0;
@@ -323,7 +322,7 @@ static double complex autocorrelation(const struct sea *sea, double lag)
     return sum / energy;
 }
 
-/* Pixels of 0.4 cell are independent every 1.5 cells at best: 4 standard errors. */
+/* Compares within 4 standard errors. Pixels of 0.4 cell are independent every 1.5 cells at best. */
 static void expect_pulse_in(const struct sea *sea, const double complex *field, size_t edge)
 {
     for (size_t lag = 1; lag <= 4; lag++) {
@@ -347,7 +346,7 @@ CLAIM(seabed_and_noise_have_the_pulse)
         const struct image *image = sea_image_of(sea, NULL, true);
         const double count = 240.0 * (360.0 - 2.0 * (double)edge);
         print_message("pulse %zu\n", i);
-        /* jittered rays, and 0.6 % beyond taps and margins: 0.03 dB */
+        /* jittered rays, and 0.6 % of the energy beyond taps and margins, are 0.03 dB */
         expect_close(
             "mean energy of the seabed, dB",
             decibels_of_energy(level_over(sea, image, 0, edge, false, sea_seabed_level).mean), 0.0,
@@ -365,7 +364,7 @@ CLAIM(seabed_and_noise_have_the_pulse)
     }
 }
 
-/* The same image whether the Gaussian is known or measured. */
+/* The image is the same whether the Gaussian is known or measured. */
 CLAIM(a_table_of_the_gaussian_is_the_gaussian)
 {
     const struct image *images[2];
@@ -382,5 +381,5 @@ CLAIM(a_table_of_the_gaussian_is_the_gaussian)
         images[with_table] = sea_image(sea);
     }
     const double worst = image_difference(images[0], images[1], &peak);
-    expect_below("difference over the peak", worst / peak, 2e-3); /* of the cubic */
+    expect_below("difference over the peak", worst / peak, 2e-3); /* for the cubic */
 }

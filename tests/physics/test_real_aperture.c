@@ -1,5 +1,5 @@
-/* Images of a sidescan: what its array's beam makes of points, spheres, seabeds and noise; and its
- * shadows, which are those of its pings: their edges are as wide as the beam is. */
+/* Images of a sidescan: points, spheres, seabeds and noise as the array's beam shows them, and
+ * shadows, which are those of pings. Their edges are as wide as the beam is. */
 #include "sea.h"
 
 #define ROWS       161
@@ -23,14 +23,14 @@ static struct sea *open_sidescan(size_t rows, size_t columns, double range)
     return sea;
 }
 
-/* A ball that hangs over the seabed, in the middle of the middle row. */
+/* Hangs a ball over the seabed, in the middle of the middle row. */
 static void hang_ball(struct sea *sea, double range, double radius)
 {
     place_in_metres(sea_add_sphere(sea, radius, 0.1), MIDDLE * SPACING, range);
     sea_ready(sea);
 }
 
-/* The column that is brightest in the middle row. */
+/* Returns the brightest column of the middle row. */
 static size_t brightest_column(const struct image *image)
 {
     const double complex *row = image->target + MIDDLE * image->columns;
@@ -40,8 +40,8 @@ static size_t brightest_column(const struct image *image)
     return at;
 }
 
-/* Two-way, from the definition: the pattern of an array whose long side makes so much sine with the
- * way, in amplitude, squared, and the way that is longer than the shortest. */
+/* Returns the two-way beam by its definition: the square of the array's amplitude pattern, and the
+ * phase of the longer way. sine: of the way off broadside. longer: than the shortest way, m. */
 static double complex beam_of(double sine, double longer)
 {
     return pow(sinc(ARRAY * sine / WAVELENGTH), 2.0) * cexp(I * 4.0 * PI / WAVELENGTH * longer);
@@ -53,7 +53,7 @@ static double complex beam(double range, double x)
     return beam_of(x / distance, distance - range);
 }
 
-/* Full width where the squared magnitude has fallen to one half, by lines between rows. */
+/* Returns the full width where the squared magnitude is one half, m, by lines between rows. */
 static double half_power_width(const struct image *image, size_t column)
 {
     const double peak = cabs(image->target[MIDDLE * image->columns + column]);
@@ -71,8 +71,8 @@ static double half_power_width(const struct image *image, size_t column)
     return width * SPACING;
 }
 
-/* sinc(z)^4 = 1/2 at z = 0.31895: 0.638 range wavelength / length. A synthetic aperture's point
- * does not widen. */
+/* sinc(z)^4 = 1/2 at z = 0.31895, so the width is 0.638 range wavelength / length. A synthetic
+ * aperture's point does not widen. */
 CLAIM(a_point_widens_with_range)
 {
     for (int i = 0; i < 6; i++) {
@@ -94,8 +94,8 @@ CLAIM(a_point_widens_with_range)
             worst = fmax(worst, cabs(image->target[row * COLUMNS + column] /
                                          image->target[MIDDLE * COLUMNS + column] -
                                      beam(range, ((double)row - MIDDLE) * SPACING)));
-        /* strips of an eighth of a wavelength: 2e-3 of the peak's phase at the beam's foot, and
-         * the bins' range instead of the echo's */
+        /* errors of strips of an eighth of a wavelength, 2e-3 of the peak's phase at the beam's
+         * foot, and of the bins' range instead of the echo's */
         if (i < 3)
             expect_below("along-track cut less the beam", worst, 0.02);
     }
@@ -117,8 +117,8 @@ CLAIM(the_resolution_that_is_told_is_the_beam_s)
     }
 }
 
-/* A turned array's, from the ball's own place: the cosine between its long side, ahead in the
- * image's rows, and the way. side: +-1, the way along which rows run. */
+/* Returns a turned array's beam at the ball's own place, by the cosine between the way and the long
+ * side, ahead in the image's rows. side: +-1, the way along which rows run. */
 static double complex turned_beam(const struct sea *sea, double x, double side)
 {
     const double heading = sea->sonar->array_heading_rad, pitch = sea->sonar->array_pitch_rad;
@@ -130,8 +130,8 @@ static double complex turned_beam(const struct sea *sea, double x, double side)
     return beam_of(along / distance, distance - range);
 }
 
-/* Pings ahead of a ball see it where the bow is turned towards it. Rows of the view run the other
- * way to starboard. */
+/* Pings ahead of a ball see it where the bow is turned towards the ball. Rows of the view run the
+ * other way to starboard. */
 CLAIM(a_turned_array_sees_a_point_from_elsewhere)
 {
     for (int i = 0; i < 2; i++) {
@@ -154,13 +154,12 @@ CLAIM(a_turned_array_sees_a_point_from_elsewhere)
         }
         expect_close("rows ahead of the ball", side * ((double)top - MIDDLE),
                      40.0 * (0.006 * cos(asin(0.25)) + 0.004 * 0.25) / SPACING, 0.6);
-        /* as for the one along the track; a ball 10 cm over the seabed is seen 1e-5 rad elsewhere
-         */
+        /* as for an array along the track; a ball 10 cm high is seen 1e-5 rad elsewhere */
         expect_below("along-track cut less the turned beam", worst, 0.03);
     }
 }
 
-/* a/2, and the sphere's own divergence r / (r + a); columns 4 mm apart lose 0.08 dB. */
+/* The glint is a/2 times the sphere's divergence r / (r + a). Columns 4 mm apart lose 0.08 dB. */
 CLAIM(the_glint_of_a_sphere)
 {
     for (int i = 0; i < 3; i++) {
@@ -176,8 +175,8 @@ CLAIM(the_glint_of_a_sphere)
     }
 }
 
-/* Of W over its energy: what the speckle of pings apart by a lag has in common. Far away it is the
- * transform of sinc^4, the cubic spline at 2 lag / length. */
+/* Returns the autocorrelation of W over its energy: the correlation of speckle in pings a lag
+ * apart. Far away it is the transform of sinc^4, the cubic spline at 2 lag / length. */
 static double autocorrelation(double range, double lag)
 {
     const double step = 0.002;
@@ -191,7 +190,7 @@ static double autocorrelation(double range, double lag)
     return creal(sum / energy);
 }
 
-/* Pixels are independent every 7 pings (0.35 m) and 1.5 columns: 4 standard errors. */
+/* Compares within 4 standard errors. Pixels are independent every 7 pings (0.35 m), 1.5 columns. */
 static void expect_pings(const struct sea *sea, double range, const double complex *field)
 {
     for (size_t lag = 2; lag <= 8; lag += 2) {
@@ -216,7 +215,7 @@ CLAIM(seabed_and_noise_have_the_beam)
                      cross_range_energy_width(sea_response(sea), ranges[i]) /
                          (2.0 / 3.0 * ranges[i] * WAVELENGTH / ARRAY),
                      1.0, 2e-3);
-        /* rows near the edges miss 0.25 % of it, taps 0.1 %, |W|^2 of 16 columns is that of one */
+        /* rows near the edges miss 0.25 % of it, taps 0.1 %; 16 columns have the |W|^2 of one */
         expect_close("mean energy of the seabed, dB",
                      decibels_of_energy(level_over(sea, image, 0, 0, false, sea_seabed_level).mean),
                      0.0, 0.04);
@@ -239,7 +238,8 @@ static void expect_response(struct sea *sea, double length, double heading, sonj
         print_message("%s\n", sea_message(sea));
 }
 
-/* 0.0509 r (wavelength / length)^2 is a quarter of the cell at 0.333 m. */
+/* Beams are refused if their range migration exceeds a quarter of the cell. It is 0.0509 r
+ * (wavelength / length)^2, which is a quarter at a length of 0.333 m. */
 CLAIM(beams_that_are_refused)
 {
     struct sea *sea = open_sidescan(ROWS, COLUMNS, 60.0);
@@ -270,8 +270,8 @@ static double place_of(size_t row)
     return ((double)row - LONG_MIDDLE_ROW) * SPACING;
 }
 
-/* Visibility half-way down the shadow of an upright screen of 1 m square to the way from the middle
- * row, 1 m before the middle of the patch: mean over columns that the pulse joins. */
+/* Gives the visibility half-way down the shadow of an upright screen, a mean over columns that the
+ * pulse joins. The screen, 1 m high, faces the middle row 1 m before the middle of the patch. */
 static void line_behind_screen(struct sea *sea, double range, double line[LONG_ROWS])
 {
     sonject_object_params *screen = sea_add(sea, SHAPE_PLANE, SCREEN_M, 2.0, 0.0);
@@ -286,8 +286,8 @@ static void line_behind_screen(struct sea *sea, double range, double line[LONG_R
     }
 }
 
-/* Share of its beam that a ping sees past a screen around 0, x being the ping's place and s the
- * distance of the screen: the edge is as wide as the beam is there. */
+/* Returns the share of its beam that a ping at x sees past a screen around 0, at the distance s.
+ * The edge is as wide as the beam is there. */
 static double expected_visibility(double x, double s)
 {
     double seen = 0.0, all = 0.0;
@@ -300,9 +300,9 @@ static double expected_visibility(double x, double s)
     return seen / all;
 }
 
-/* And a ping's energy of the bare seabed over that of a strip: integral of sinc^4, 2/3 of range
- * wavelength / length, over the strip's width; 10^5 rays of weights whose deviation is below their
- * mean: 0.014 dB. */
+/* Edges of shadows widen with range. A ping's energy of the bare seabed, over that of a strip, is
+ * the integral of sinc^4, 2/3 of range wavelength / length, over the strip's width. 10^5 rays of
+ * weights whose deviation is below their mean know it to 0.014 dB. */
 CLAIM(shadows_and_pings_widen_with_range)
 {
     static const double places[] = {25.0, 40.0, 55.0};
@@ -330,10 +330,10 @@ CLAIM(shadows_and_pings_widen_with_range)
     }
 }
 
-/* A turned array looks at the screen from elsewhere: from where its beam's middle meets it. Heading
- * turns the bow towards the imaged side, and the beam backwards: pings that see the screen are
- * ahead of it, which to starboard is before it in the view's rows. The long side has a cosine off
- * the slant plane as well: x at the array's ground range. The columns lie 1 m behind the screen. */
+/* A turned array sees the screen from the place where the middle of its beam meets the screen.
+ * Heading turns the bow towards the imaged side, and the beam backwards. So pings that see the
+ * screen are ahead of it, which to starboard is before it in the view's rows. The long side has a
+ * cosine off the slant plane, so x goes by ground range. Columns are 1 m behind the screen. */
 CLAIM(heading_moves_shadows)
 {
     for (int i = 0; i < 2; i++) {

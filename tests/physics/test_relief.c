@@ -1,5 +1,5 @@
 /* A seabed that is not level: its own echo by the local grazing angle, its shadows and layover, and
- * what it does to targets, against geometry and integration in double precision. */
+ * its effect on targets, compared with geometry and integration in double precision. */
 #include "sea.h"
 
 #define ROWS    160
@@ -23,7 +23,7 @@ static struct sea *open_sea(double ray_scale)
     return sea;
 }
 
-/* Energy of a column, mean over the 40 middle rows. */
+/* Returns the energy of a column, a mean over the 40 middle rows. */
 static double mean_of_column(const struct image *image, size_t column)
 {
     double mean = 0.0;
@@ -32,7 +32,7 @@ static double mean_of_column(const struct image *image, size_t column)
     return mean;
 }
 
-/* A slope for `half` m each way, then down to 0 in `half` m more. */
+/* Returns the height of a slope of `half` m each way, which then falls to 0 in `half` m more. */
 static double ramp(double slope, double way, double half)
 {
     const double beyond = (fabs(way) - half) / half;
@@ -42,8 +42,7 @@ static double ramp(double slope, double way, double half)
                         : 0.0;
 }
 
-/* Lays a plane of the slopes given through the middle of the patch: of 0.7 m each way along the
- * track, or 2 m in range. */
+/* Lays a plane through the patch's middle: 0.7 m each way along the track, or 2 m in range. */
 static void lay_slope(struct sea *sea, double along, double outward)
 {
     const double step = 0.025;
@@ -67,8 +66,8 @@ static void lay_slope(struct sea *sea, double along, double outward)
     sea_ready(sea);
 }
 
-/* On ground that rises with a slope the sound of a range comes from another point, at another
- * angle: mu sin^2(local) / cos(local) times the point response's area on the ground. */
+/* Returns the energy of a slope: mu sin^2(local) / cos(local) times the point response's area on
+ * the ground. On a slope the sound of a range comes from another point, at another angle. */
 static double slope_energy(const struct sea *sea, double slope, double range)
 {
     const double altitude = sea->sonar->altitude_m;
@@ -106,14 +105,14 @@ CLAIM(slopes_towards_and_away)
         }
         struct estimate energy = estimate_of_sums(sum, squares, 100.0);
         energy.error *= sqrt(3.0); /* three columns lie within a pulse */
-        /* W's tail beyond the kept reach: 0.1 % of the energy */
+        /* W's tail beyond the kept reach has 0.1 % of the energy */
         expect_estimate("energy over closed form", energy, 1.0, 2e-3);
         expect_below("its error", energy.error, 2e-3);
     }
 }
 
-/* Ground that rises along the track: seen from broadside the range does not change along a row, and
- * Lambert's law loses 1/sqrt(1 + slope^2). */
+/* Ground rises along the track. Seen from broadside the range does not change along a row, and
+ * Lambert's law leaves 1/sqrt(1 + slope^2). */
 CLAIM(a_slope_along_the_track)
 {
     const double slope = 0.4;
@@ -134,8 +133,8 @@ CLAIM(a_slope_along_the_track)
     expect_close("energy over closed form", sum, 1.0, 4.0 * 0.03 / sqrt(4000.0) * 3.0 + 2e-3);
 }
 
-/* The row through the middle in double precision: the ground in short steps, each lit where it
- * stands over all that is nearer, mu cos^2 of its energy in the pulse's squared envelope. */
+/* Integrates the row through the middle in double precision, over short steps of the ground. A step
+ * that stands over all nearer ones is lit and returns mu cos^2 of its energy, by G^2. */
 static const double *integrate_row(const struct sea *sea)
 {
     const double step = 2e-4, altitude = sea->sonar->altitude_m, x = middle_x(sea);
@@ -160,8 +159,8 @@ static const double *integrate_row(const struct sea *sea)
     return energy;
 }
 
-/* Long-crested ripples: every pixel of the mean line, from gentle ones to such that hide half of
- * the ground. */
+/* Every pixel of the mean line over long-crested ripples agrees with integration, from gentle
+ * ripples to those that hide half of the ground. */
 CLAIM(ripples_by_integration)
 {
     static const double heights[] = {0.02, 0.10};
@@ -192,8 +191,8 @@ CLAIM(ripples_by_integration)
     }
 }
 
-/* The shadow of a mound ends where the line over its crest meets the ground, and begins where that
- * touches it. */
+/* The shadow of a mound ends where the line over the crest meets the ground, and begins where the
+ * line touches the mound. */
 CLAIM(the_shadow_of_a_mound)
 {
     struct sea *sea = open_sea(4.0);
@@ -229,7 +228,7 @@ CLAIM(the_shadow_of_a_mound)
     expect_close("beginning of the shadow, m", sea_range(sea, (double)column), touch, 0.08);
 }
 
-/* A relief of no height is the plane: every bit of energies, glints and chains. */
+/* A relief of no height gives the plane's bits in energies, glints and chains. */
 CLAIM(no_height_is_the_plane)
 {
     for (int is_wide = 0; is_wide < 2; is_wide++) {
@@ -246,7 +245,7 @@ CLAIM(no_height_is_the_plane)
             images[i] = sea_image(sea);
         }
         assert_null(images[0]->level_energy);
-        /* the object stands in some ways to a wide source, but not over the level seabed */
+        /* the object is in some ways to a wide source, but not over the level seabed */
         if (!is_wide)
             assert_memory_equal(images[1]->level_energy, images[0]->seabed_energy,
                                 images[0]->pixels * sizeof(float));
@@ -254,7 +253,7 @@ CLAIM(no_height_is_the_plane)
     }
 }
 
-/* A sphere on the bottom of a pit glints from where it lies, at its own strength; behind a mound it
+/* A sphere on the bottom of a pit glints from its place, at its own strength. Behind a mound it
  * does not. */
 CLAIM(a_glint_in_a_pit)
 {
@@ -277,8 +276,8 @@ CLAIM(a_glint_in_a_pit)
     }
 }
 
-/* What a mound hides from the sonar the sea surface shows: only the way by it, there and back,
- * passes over the crest. The line over the crest passes 12 cm over where the sphere would glint. */
+/* The sea surface shows a sphere that a mound hides: only the way by the surface, there and back,
+ * passes over the crest. The line over the crest is 12 cm over the place of the straight glint. */
 CLAIM(a_glint_over_a_mound)
 {
     double range;
@@ -300,8 +299,8 @@ CLAIM(a_glint_over_a_mound)
                  1e-4);
 }
 
-/* A plate that stands upright on rising ground throws its shadow up the slope: shorter. It ends
- * where the line over the far top edge meets the ground z = slope (y - middle). */
+/* An upright plate on rising ground throws a shorter shadow, up the slope. The shadow ends where
+ * the line over the far top edge meets the ground z = slope (y - middle). */
 CLAIM(a_shadow_on_a_slope)
 {
     const double slope = 0.25;
@@ -320,8 +319,8 @@ CLAIM(a_shadow_on_a_slope)
     expect_close("end of the shadow, m", sea_range(sea, (double)column - 0.5), end, 0.02);
 }
 
-/* Layers of nearly one sound speed bend nothing: the table of rays, with points above and below the
- * mean seabed, gives what straight rays give. */
+/* Layers of nearly one sound speed bend nothing. The table of rays, with points above and below the
+ * mean seabed, gives the energy of straight rays. */
 CLAIM(layers_that_bend_nothing)
 {
     static const struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {4.0, 1500.0001, 1.0}};
@@ -329,7 +328,7 @@ CLAIM(layers_that_bend_nothing)
     double sums[2] = {0.0, 0.0}, difference = 0.0;
     for (int i = 0; i < 2; i++) {
         struct sea *sea = open_sea(1.0);
-        sea->sonar->transducer_side_m = 0.05; /* ways home are looked up too */
+        sea->sonar->transducer_side_m = 0.05; /* so that ways home are looked up, too */
         sea_add_ripples(sea, 0.5, 0.08, 0.5 * PI, 0.6);
         sea_add_mound(sea, 1.0, -0.3, 0.0);
         sea_set_layers(sea, layers, i ? 2 : 0);
@@ -384,7 +383,8 @@ static sonject_status try_relief(struct sea *sea)
     return status;
 }
 
-/* A smooth seabed, and heights near the sonar: tests/unit/test_scene_relief.c. */
+/* Refusals of a smooth seabed and of heights near the sonar are in
+ * tests/unit/test_scene_relief.c. */
 CLAIM(relief_that_is_refused)
 {
     struct sea *sea = open_sea(1.0);

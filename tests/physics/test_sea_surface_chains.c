@@ -1,9 +1,9 @@
 /* The sea surface within chains of several interactions: its rough part, its mirror inside and at
- * an end of a path, and which path is counted how often. */
+ * an end of a path, and the number of times that a path is counted. */
 #include "reference_paths.h"
 #include "trace/chains.h"
 
-#define ORDERS   2 /* of two and three interactions */
+#define ORDERS   2 /* two and three interactions */
 #define RANGES   10
 #define MIDDLE_M 52.0
 #define SEEDS    16
@@ -14,7 +14,7 @@
 
 static const struct ranges ranges = {RANGES, MIDDLE_M - 0.5 * RANGES, 1.0};
 
-/* A Lambert sphere over a Lambert seabed, 16 m of track, the surface 5 m over the sonar. */
+/* Opens a Lambert sphere over a Lambert seabed, 16 m of track, the surface 5 m over the sonar. */
 static struct sea *open_scene(double height_m, double radius_m)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, MIDDLE_M);
@@ -29,7 +29,7 @@ static struct sea *open_scene(double height_m, double radius_m)
     return sea;
 }
 
-/* Half the length of the track on which echoes are tallied, its middle in that of the patch. */
+/* Returns half the length of the track on which echoes are tallied. Both have the same middle. */
 static double half_track(struct sea *sea)
 {
     double first_x, last_x;
@@ -41,10 +41,10 @@ static double half_track(struct sea *sea)
 /* --- A small disc that faces a Lambert surface: double integral --- */
 
 #define DISC_M 0.2
-#define STEPS  600 /* of the integral over the surface, each way */
+#define STEPS  600 /* of the integral over the surface, in each direction */
 
-/* What the disc sends to a piece of the surface at (x, y), dx dy, and that to the sonar; ways: 1 in
- * the disc's column, and the reverse in the other's. */
+/* Adds the path sonar, disc, a piece of the surface at (x, y), sonar, in the disc's column, and its
+ * reverse in the piece's column. */
 static void add_piece(const struct sea *sea, double x, double y, double area, double track,
                       struct estimate *expected)
 {
@@ -72,7 +72,7 @@ static void add_piece(const struct sea *sea, double x, double y, double area, do
     }
 }
 
-/* 1.5 %: the disc is no point, and the angles at it are those of the first hit's column. */
+/* 1.5 % is for a disc that is no point, and for its angles, those of the first hit's column. */
 CLAIM(a_disc_under_a_lambert_surface)
 {
     for (int is_focused = 0; is_focused < 2; is_focused++) {
@@ -105,9 +105,9 @@ CLAIM(a_disc_under_a_lambert_surface)
 /* --- Every path, against a reference that runs all of them --- */
 
 enum convention {
-    AS_CONNECTED, /* paper columns: every path counts in its own first hit's */
+    AS_CONNECTED, /* paper columns: every path counts in its first hit's column */
     AS_FOCUSED,   /* a path and its reverse are one echo, together four times the energy of one */
-    AS_BY_CHANCE  /* brute force: what ends on the surface once more, for its reverse */
+    AS_BY_CHANCE  /* brute force: a path that ends on the surface also for its reverse */
 };
 
 static bool is_of_surface(int met)
@@ -115,7 +115,7 @@ static bool is_of_surface(int met)
     return met == MET_SURFACE || met == MET_MIRROR;
 }
 
-/* How often the image holds a path: kernels/MATH.md, "Chains by way of the sea surface". */
+/* Returns how often the image holds a path (MATH.md, "Chains by way of the sea surface"). */
 static double ways_of(int path, enum convention convention, int *order)
 {
     int met[REFERENCE_ORDERS];
@@ -137,7 +137,7 @@ static double ways_of(int path, enum convention convention, int *order)
     const bool comes_from_there = last == MET_SEABED && is_of_surface(met[count - 2]);
     if (convention == AS_CONNECTED)
         return begins_there && is_of_surface(last) ? 0.0 : 1.0;
-    /* what the library runs in the other direction */
+    /* the library runs these in the other direction */
     if (begins_there || (convention == AS_FOCUSED && goes_there))
         return 0.0;
     if (convention == AS_BY_CHANCE)
@@ -149,8 +149,7 @@ static double ways_of(int path, enum convention convention, int *order)
     return met[0] == MET_SEABED ? 4.0 : 0.0;
 }
 
-/* Connected chains begin on seabed that is not too far from the target, brute force on the patch's.
- */
+/* Sets the seabed on which paths begin: near the target, or the patch's by brute force. */
 static void look_at_seabed(struct sea *sea, enum convention convention,
                            struct reference_request *request)
 {
@@ -196,10 +195,10 @@ static void find_expected(struct sea *sea, enum convention convention,
     }
 }
 
-/* The surface's rough part and its mirror at once: 1 - exp(-P^2) at right angles is 0.92. Where the
- * library gives a path's reverse its column, it keeps the angles at the far end: 3 %; a bin of
- * 3 mm, shared at either end of a range, is 1 %. Brute force is the paper's own estimator: few
- * of its paths meet the source, so that five times the rays know three ranges to 13 %. */
+/* The surface has its rough part and its mirror at once: 1 - exp(-P^2) at right angles is 0.92.
+ * Where the library gives a path's reverse its column, it keeps the angles at the far end, which is
+ * 3 %. A bin of 3 mm, shared at either end of a range, is 1 %. Brute force is the paper's own
+ * estimator. Few of its paths meet the source, so five times the rays know three ranges to 13 %. */
 CLAIM(every_path_has_its_energy)
 {
     static const struct {
@@ -233,7 +232,7 @@ CLAIM(every_path_has_its_energy)
     }
 }
 
-/* --- What changes nothing --- */
+/* --- Surfaces that change nothing --- */
 
 struct change {
     const char *name;
@@ -256,7 +255,7 @@ static struct energies trace_changed(const struct change *change)
     return sea_chains(sea, &ranges, 1, 1);
 }
 
-/* Pairs of scenes whose chains have the same bits, or have not. */
+/* Chains of both scenes of a pair have the same bits, or have not, as `agrees` says. */
 CLAIM(what_is_not_heard_changes_nothing)
 {
     static const struct {
@@ -279,8 +278,8 @@ CLAIM(what_is_not_heard_changes_nothing)
     }
 }
 
-/* From which range on the surface is in chains: a patch that ends before the first echo by way of
- * it holds none. The sphere's radius is 0.4 m. */
+/* The surface is in chains from its first echo on. A patch that ends before holds no echo by way of
+ * the surface. The sphere's radius is 0.4 m. */
 CLAIM(the_surface_is_in_chains_from_its_first_echo_on)
 {
     for (int holds = 0; holds < 2; holds++) {

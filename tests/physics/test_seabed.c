@@ -1,15 +1,15 @@
-/* A plain Lambert seabed: mu sin^2(grazing) times the area of a pixel's point response, from the
- * first return on, for any number of rays, however energies are turned into pixels and shared
- * between bins; and its speckle, circular Gaussian with the point response's correlation. */
+/* A plain Lambert seabed has mu sin^2(grazing) times the area of a pixel's point response, from the
+ * first return on. Rays, pixels and the sharing between bins do not change that. Its speckle is
+ * circular Gaussian with the point response's correlation. */
 #include "sea.h"
 
 #define ROWS    240
 #define COLUMNS 200
-#define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
+#define EDGE    24 /* pixels near an edge, which lack a part of |W|^2 or of the pulse */
 
-/* From the formulas, not from the library's: mu sin^2(g) dA, dA = width of |W|^2 times the ground
- * length of G^2, 1.0645 c/2B / cos(g) on the water's own range scale. What lies at r shows at
- * r c_ref/c, and energies gain (c_ref/c)^4. */
+/* Returns the level by formulas, not the library's: mu sin^2(g) dA. dA is the width of |W|^2 times
+ * the ground length of G^2, 1.0645 c/2B / cos(g) on the water's own range scale. A target at r
+ * shows at r c_ref/c, and energies gain (c_ref/c)^4. */
 static double closed_form(const struct sea *sea, double processor_range)
 {
     const double c = sea->medium->sound_speed_mps;
@@ -24,8 +24,8 @@ static double closed_form(const struct sea *sea, double processor_range)
            pow(processor_range / range, 4.0);
 }
 
-/* Ranges; rays; a wrong sound speed; a source beside the receiver, which changes path and angle by
- * a few mm in 30 m; and another pixel grid, resolution and bandwidth. */
+/* Cases are ranges, rays, a wrong sound speed, a source beside the receiver, which changes path and
+ * angle by a few mm in 30 m, and another pixel grid, resolution and bandwidth. */
 CLAIM(the_level_is_lamberts)
 {
     static const struct {
@@ -57,7 +57,7 @@ CLAIM(the_level_is_lamberts)
         const struct estimate energy = level_over(sea, image, EDGE, EDGE, false, closed_form);
         const struct estimate field = level_over(sea, image, EDGE, EDGE, true, closed_form);
         print_message("%.0f m, %.0f times the rays\n", cases[i].range, cases[i].rays);
-        /* W's tail beyond the kept reach: 0.1 % of the energy */
+        /* W's tail beyond the kept reach has 0.1 % of the energy */
         expect_estimate("expected energy over closed form", energy, 1.0, 2e-3);
         expect_estimate("realisation over closed form", field, 1.0, 2e-3);
         expect_below("4 standard errors of the realisation", 4.0 * field.error, 0.047); /* 0.2 dB */
@@ -65,8 +65,8 @@ CLAIM(the_level_is_lamberts)
     }
 }
 
-/* A map multiplies: half the ground twice as bright, the middle of each half shows it, and steps
- * between pixels sit where these are: half-way energy between their middles. */
+/* A map multiplies the level, by 3 in one half along the track and by 10 in one half in range. The
+ * middle of each quarter shows it. Steps lie between pixels, with half-way energy. */
 CLAIM(a_map_multiplies)
 {
     static const size_t at[4][2] = {{60, 50}, {180, 50}, {60, 150}, {180, 150}};
@@ -86,8 +86,7 @@ CLAIM(a_map_multiplies)
         for (size_t row = at[i][0] - 10; row < at[i][0] + 10; row++)
             for (size_t column = at[i][1] - 10; column < at[i][1] + 10; column++)
                 sum += ratio[row * COLUMNS + column];
-        /* W's side lobes bring in a little of the brighter half: 1/(pi^2 50) of 2 times its level
-         */
+        /* W's side lobes bring in some of the brighter half: 1/(pi^2 50) of 2 times its level */
         expect_close("over closed form", sum / 400.0 / factor[i], 1.0, 0.01);
     }
     double line[COLUMNS] = {0.0};
@@ -106,10 +105,10 @@ CLAIM(a_map_multiplies)
     expect_close("step of the map, row", (double)step + 0.5, ROWS / 2 - 0.5, 0.51);
 }
 
-/* Energy of a strip up to a ground range y: integral of mu sin^2(grazing) over its length, that is
- * mu h atan(y/h); none before the bin whose middle comes last before the first return. From 10 m
- * over the seabed, and from 2 m in a patch that begins nearer to the sonar than the pulse reaches.
- */
+/* The energy of a strip up to a ground range y is the integral of mu sin^2(grazing) over its
+ * length, mu h atan(y/h). There is none before the bin whose middle comes last before the first
+ * return. The sonar is 10 m over the seabed, or 2 m in a patch that begins within reach of the
+ * pulse. */
 CLAIM(the_first_return)
 {
     static const double ranges[] = {10.6, 3.01}, altitudes[] = {10.0, 2.0};
@@ -127,8 +126,8 @@ CLAIM(the_first_return)
             for (int q = 0; q < rough.strips; q++)
                 sum += (double)rough.energy[q * rough.bins + bin] / rough.strips;
             assert_true(next >= h || sum == 0.0);
-            if (bin % 200 == 150 && end > h) /* sharing smooths the sum over a bin of 3 mm: of its
-                                                curvature 0.5 m on 1e-5 is left */
+            if (bin % 200 == 150 && end > h) /* sharing smooths the sum over a bin of 3 mm; 0.5 m
+                                                on, 1e-5 of its curvature is left */
                 expect_close(
                     "energy so far over the closed form",
                     sum / (sea->seabed->lambert * strip * h * atan(sqrt(end * end - h * h) / h)),
@@ -138,8 +137,8 @@ CLAIM(the_first_return)
     }
 }
 
-/* Echoes from beyond the middles of the outermost bins share with them too: rays go that far. Over
- * its neighbour each has 1 but for 1e-4 of range. */
+/* Echoes from beyond the middles of the outermost bins are shared with these, too, since rays go
+ * that far. Each outermost bin has the energy of its neighbour but for 1e-4 of range. */
 CLAIM(outermost_bins_are_full)
 {
     struct sea *sea = sea_open(64, 96, 50.0);
@@ -161,18 +160,18 @@ CLAIM(outermost_bins_are_full)
 
 /* ---- echoes between bins ---- */
 
-#define STEPS   16 /* of a pixel */
-#define REACH   3  /* pixels either side that hold its echo */
+#define STEPS   16 /* of the face, within a pixel */
+#define REACH   3  /* pixels on either side that hold its echo */
 #define SIDE_M  0.1
 #define LAMBERT 0.2
 
-/* Energy of the pixels about a rough face by column, all rows; returns how far, m, its range lies
- * beyond the middle one's. */
+/* Gives the energy of the pixels about a rough face by column, over all rows. Returns the face's
+ * range less that of the middle pixel, m. */
 static double trace_face(struct sea *sea, int step, double energy[2 * REACH + 1])
 {
     sonject_object_params *face = sea_object(sea, 0);
     place_in_metres(face, 0.5 * (double)sea->rows * 0.025, 50.0 + 0.025 * step / STEPS);
-    for (int i = 0; i < 2; i++) { /* it hangs by its lowest point */
+    for (int i = 0; i < 2; i++) { /* the face hangs by its lowest point */
         sea_ready(sea);
         const double *centre = sea_centre(sea, 0);
         face->roll_rad = 0.5 * PI - atan2(sea->sonar->altitude_m - centre[2], centre[1]);
@@ -188,11 +187,10 @@ static double trace_face(struct sea *sea, int step, double energy[2 * REACH + 1]
     return (column - (double)middle) * 0.025;
 }
 
-/* A rough face at one range, moved through a pixel in steps finer than bins: its echo is the pulse
+/* A rough face at one range moves through a pixel in steps finer than bins. Its echo is the pulse
  * at its own range, of its own energy, wherever bins lie. Sharing between bins d apart widens the
- * pulse's energy, a Gaussian of variance s^2, by up to d^2/4: with d = s/3.4 its peak is 0.047 dB
- * low at most, and 0.02 mm off. Rays count the face's area to 0.2 %. Of the mean over a pixel no
- * bin can take anything. */
+ * pulse's energy, a Gaussian of variance s^2, by up to d^2/4. With d = s/3.4 its peak is 0.047 dB
+ * low at most, and 0.02 mm off. Rays count the face's area to 0.2 %. Bins keep a pixel's mean. */
 CLAIM(a_face_within_a_pixel)
 {
     static double energy[STEPS][2 * REACH + 1], beyond[STEPS];
@@ -207,7 +205,7 @@ CLAIM(a_face_within_a_pixel)
         for (int k = 0; k <= 2 * REACH; k++)
             sum += energy[step][k];
     }
-    const double deviation = 0.025 / (2.0 * sqrt(log(2.0))); /* of G^2 over sqrt(2) */
+    const double deviation = 0.025 / (2.0 * sqrt(log(2.0))); /* of G^2 times sqrt(2) */
     const double peak = sum * 0.025 / STEPS / (deviation * sqrt(PI));
     double farthest = 0.0, off = 0.0, worst = 0.0;
     for (int step = 0; step < STEPS; step++) {
@@ -221,7 +219,7 @@ CLAIM(a_face_within_a_pixel)
         worst = fmax(worst, fabs(decibels_of_energy(energy[step][REACH] / peak *
                                                     exp(from_pixel * from_pixel))));
     }
-    /* all rows but for the response's tails */
+    /* of all rows, but for the response's tails */
     expect_close("energy over the face's", peak / (LAMBERT * SIDE_M * SIDE_M), 1.0, 0.02);
     expect_below("peak's range off the face's, mm", 1e3 * farthest, 0.1);
     expect_below("level off the face's, dB", off, 0.05);
@@ -231,7 +229,7 @@ CLAIM(a_face_within_a_pixel)
 /* ---- speckle ---- */
 
 #define SIDE   480 /* pixels */
-#define MARGIN 40  /* pixels next to an edge lack a part of their response */
+#define MARGIN 40  /* pixels next to an edge, which lack a part of their response */
 #define BLOCKS 20  /* of rows, for standard errors from the scatter between them */
 
 static struct sea *open_speckle(double ray_scale, uint64_t seed)
@@ -244,7 +242,7 @@ static struct sea *open_speckle(double ray_scale, uint64_t seed)
     return sea;
 }
 
-/* The seabed's realisation over the root of the expected energy. */
+/* Returns the seabed's realisation over the root of the expected energy. */
 static const double complex *speckle_of(double ray_scale, uint64_t seed)
 {
     struct sea *sea = open_speckle(ray_scale, seed);
@@ -256,7 +254,7 @@ static const double complex *speckle_of(double ray_scale, uint64_t seed)
     return field;
 }
 
-/* Intensities on a lattice of at least 3 resolutions: mean, contrast, Kolmogorov-Smirnov. */
+/* Compares intensities on a lattice of 3 resolutions or more with an exponential law. */
 static void expect_exponential(const double complex *field)
 {
     double *samples = claim_memory(SIDE * SIDE, sizeof *samples);
@@ -275,16 +273,16 @@ static void expect_exponential(const double complex *field)
         const double expected = 1.0 - exp(-samples[i]);
         distance = fmax(distance, fmax((double)(i + 1) / n - expected, expected - (double)i / n));
     }
-    /* exponential intensities: the mean's and the contrast's standard errors are both 1/sqrt(n);
-     * Kolmogorov's distance stays below 2.27/sqrt(n) as often as a normal one within 4 sigma; W's
-     * tail that is left out takes 0.1 % of the mean */
+    /* the mean and the contrast of exponential intensities both have the standard error 1/sqrt(n).
+     * Kolmogorov's distance stays below 2.27/sqrt(n) as often as a normal deviate within 4 sigma.
+     * The tail of W that is left out takes 0.1 % of the mean */
     expect_close("mean", mean, 1.0, 4.0 / sqrt(n) + 1e-3);
     expect_close("contrast", sqrt(squares / n - mean * mean) / mean, 1.0, 4.0 / sqrt(n));
     expect_below("Kolmogorov-Smirnov distance", distance, 2.27 / sqrt(n) + 4e-4);
 }
 
-/* Mean of conj(a) b at a lag, over row blocks: real and imaginary part, and the standard error from
- * their scatter. */
+/* Gives the mean of conj(a) b at a lag, real and imaginary part, with the standard error from the
+ * scatter of row blocks. */
 static void correlate(const double complex *a, const double complex *b, size_t rows, size_t columns,
                       struct estimate parts[2])
 {
@@ -302,7 +300,7 @@ static void correlate(const double complex *a, const double complex *b, size_t r
         parts[part] = estimate_of(means[part], BLOCKS);
 }
 
-/* Autocorrelation of sinc(x/delta) is itself, of exp(-r^2/2s^2) is exp(-r^2/4s^2). */
+/* The autocorrelation of sinc(x/delta) is the sinc, that of exp(-r^2/2s^2) is exp(-r^2/4s^2). */
 static void expect_response(const double complex *field)
 {
     const double deviation = 0.025 / (2.0 * sqrt(log(2.0))); /* c/2B = 2.5 cm */

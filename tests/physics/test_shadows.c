@@ -1,11 +1,11 @@
-/* Shadows lie where rays say they must, add up once, and starboard mirrors port. */
+/* Shadows lie where rays put them and count once, and starboard mirrors port. */
 #include "sea.h"
 
 #define ROWS    201
 #define COLUMNS 401
 #define RANGE   40.0
 
-/* Visibility, pixel by pixel, with many rays. */
+/* Returns the visibility, pixel by pixel, with many rays. */
 static const double *trace_visibility(struct sea *sea)
 {
     sea->injection->ray_scale = 16.0;
@@ -15,8 +15,8 @@ static const double *trace_visibility(struct sea *sea)
     return visibility;
 }
 
-/* Visibility along the track, mean over some columns: where an edge runs along the rays, each ray
- * of a strip is hidden or not by chance. */
+/* Gives the visibility along the track, a mean over some columns. Where an edge runs along the
+ * rays, each ray of a strip is hidden or not by chance. */
 static void along_track(const double *visibility, size_t first_column, size_t columns,
                         double line[ROWS])
 {
@@ -33,7 +33,7 @@ static double column_of_ground(const struct sea *sea, double ground_range)
 }
 
 /* A level plate at height H hides the ground from y h/(h - H) of its near edge to that of its far
- * one: H y/(h - H) behind each. Half a pixel is asked; stratified rays draw a tenth of it. */
+ * edge, H y/(h - H) behind each. Half a pixel is required. Stratified rays draw a tenth of it. */
 CLAIM(the_shadow_of_a_flat_top)
 {
     static const double heights[] = {0.3, 0.6, 1.0};
@@ -60,12 +60,12 @@ CLAIM(the_shadow_of_a_flat_top)
     }
 }
 
-/* Beside the shadow of a plate at height H, ground x away from the edge is hidden from the part of
- * a source of side s, centred on the receiver, that lies beyond x h/H along the track. So each side
- * of the shadow lacks s H/8h of the seabed's energy; what the receiver cannot see is lost to the
- * plate, and does not lack. The plate is so wide in range that it hides its middle from all of the
- * source. Echoes lie o^2/4r farther, along a level that falls: 0.02 rows brighter. Standard errors:
- * 0.022 of hiding, 0.016 of the cosine; four: 0.11. */
+/* A source of side s is centred on the receiver. Beside the shadow of a plate at height H, ground x
+ * away from the edge is hidden from the part of the source beyond x h/H along the track. So each
+ * side of the shadow lacks s H/8h of the seabed's energy. Energy that the receiver cannot see is
+ * lost to the plate, and does not lack. The plate is so wide in range that it hides its middle from
+ * all of the source. Echoes lie o^2/4r farther, along a level that falls: 0.02 rows brighter.
+ * Standard errors are 0.022 of hiding and 0.016 of the cosine; four are 0.11. */
 CLAIM(a_wide_source_dims_the_sides_of_a_shadow)
 {
     const double height = 1.0, sides[] = {0.0, 2.0};
@@ -87,8 +87,8 @@ CLAIM(a_wide_source_dims_the_sides_of_a_shadow)
                  2.0 * sides[1] * height / (8.0 * 10.0) / 0.025 - 0.02, 0.11);
 }
 
-/* Rays tangent to the sphere, in the plane through its centre. The rows beside, which |W|^2 brings
- * in, have a shorter shadow; in the middle of the shadow its width is that of the sphere. */
+/* Rays tangent to the sphere, in the plane through its centre, bound the shadow. The rows beside,
+ * which |W|^2 brings in, have a shorter one. In the middle the shadow is as wide as the sphere. */
 CLAIM(the_shadow_of_a_sphere)
 {
     static const double radii[] = {0.25, 0.35}, lifts[] = {0.0, 0.2};
@@ -114,7 +114,7 @@ CLAIM(the_shadow_of_a_sphere)
     }
 }
 
-/* A tilted plate off the middle, about which nothing is symmetric, put into an even patch. */
+/* Injects a tilted plate off the middle into an even patch, so that nothing is symmetric. */
 static const struct injected *inject_plate(struct sea *sea, double row, double heading, double roll)
 {
     float *pixels = claim_memory(sea->pixels, sizeof *pixels);
@@ -131,8 +131,8 @@ static const struct injected *inject_plate(struct sea *sea, double row, double h
     return sea_inject(sea, pixels, false);
 }
 
-/* Starboard is port seen from the other end: rows in reverse, heading pi less, roll the other way
- * round. The same rays are traced, so every bit agrees. */
+/* Starboard is port seen from the other end: rows are reversed, a heading h becomes pi - h, and
+ * roll changes its sign. The same rays are traced, so every bit agrees. */
 CLAIM(starboard_is_port_from_the_other_end)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -155,8 +155,8 @@ CLAIM(starboard_is_port_from_the_other_end)
     expect_close("row of the truth", starboard->objects[0].row, 80.0, 1e-9);
 }
 
-/* The same scene on the other side makes the same picture: poses are meant in ping order. Other
- * rays are traced, so energies agree as far as their number allows. */
+/* A scene makes the same image on both sides, since poses are meant in ping order. Other
+ * rays are traced, so energies agree as far as the number of rays allows. */
 CLAIM(sides_look_alike)
 {
     const struct injected *sides[2];
@@ -176,8 +176,8 @@ CLAIM(sides_look_alike)
     expect_below("shadows' difference over their area", difference / sum, 0.02);
 }
 
-/* A ball hides as much seabed when 39 others stand in its shadow or inside it: what is hidden twice
- * is lost once. */
+/* A ball hides as much seabed when 39 others stand in its shadow or inside it. Seabed that is
+ * hidden twice is lost once. */
 CLAIM(shadows_are_lost_once)
 {
     double hidden[2] = {0.0, 0.0};

@@ -1,15 +1,14 @@
-/* An object's target strength is its own: its echo's peak, wherever pixels lie and however far
- * apart they are. */
+/* An object's target strength is its echo's peak, wherever the pixels lie and at any spacing. */
 #include "sea.h"
 
 #define RANGE       50.0
 #define RESOLUTION  0.025
 #define WAVELENGTH  0.015
-#define CLOSED_FORM 0.05    /* dB: systematic, of bins and of parabolas between points */
-#define ROUGH_DB    0.2     /* its energies are known by strips of a resolution */
-#define GIBBS       1.08949 /* 1/2 + Si(pi)/pi: sinc passing over the end of a line */
+#define CLOSED_FORM 0.05    /* dB; systematic errors of bins and of parabolas between points */
+#define ROUGH_DB    0.2     /* dB; rough energies are known in strips of a resolution */
+#define GIBBS       1.08949 /* 1/2 + Si(pi)/pi, as a sinc passes over a line's end */
 
-/* Pixels, m: along the track and in range; and where a centre lies between them. */
+/* Spacings of pixels along the track and in range, m, and offsets of a centre from a pixel. */
 static const double spacings[][2] = {{0.025, 0.025}, {0.01, 0.0125}, {0.1, 0.075}};
 static const double offsets[][2] = {{0.0, 0.0}, {0.5, 0.27}, {0.21, 0.5}, {0.77, 0.83}};
 #define PLACES (COUNT(spacings) * COUNT(offsets))
@@ -35,12 +34,13 @@ static double peak_db(struct sea *sea)
     return decibels_of_energy(sea_image(sea)->objects[0].peak_energy);
 }
 
-/* 1/lambda times the integral of sinc(x/delta) exp(2ikd) G(offset - d) over the disc, d the depth
- * of the sphere's front, where the pulse's middle makes it largest; the front is curved against the
- * wavefront. About a/2 times the factor of W alone, -0.8 dB and -3.2 dB for these. */
+/* Returns a sphere's target strength, dB: 1/lambda times the integral of sinc(x/delta) exp(2ikd)
+ * G(offset - d) over the disc, with the offset that makes it largest. d is the depth behind the
+ * sphere's foremost point. The root is for the wavefront's own curvature. The result is about a/2
+ * times the factor of W alone, -0.8 dB and -3.2 dB for these spheres. */
 static double sphere_db(double a)
 {
-    const double deviation = 0.601 * RESOLUTION; /* of the default bandwidth: c/2B is 2.5 cm */
+    const double deviation = 0.601 * RESOLUTION; /* for the default c/2B of 2.5 cm */
     const double step = WAVELENGTH / 40.0;
     double largest = 0.0;
     for (int i = 0; i < 8; i++) {
@@ -57,7 +57,7 @@ static double sphere_db(double a)
     return decibels_of_amplitude(largest / sqrt(1.0 + a / RANGE));
 }
 
-/* The level that is asked for is the target's, too, not that of a pixel. */
+/* A level that is asked for is the target's, too, and not a pixel's. */
 CLAIM(spheres_wherever_pixels_lie)
 {
     static const double radii[] = {0.15, 0.3};
@@ -78,7 +78,8 @@ CLAIM(spheres_wherever_pixels_lie)
     }
 }
 
-/* Broadside: sqrt(a / 2 lambda) delta where W passes over the line, Gibbs' overshoot at its end. */
+/* At broadside the amplitude is sqrt(a / 2 lambda) delta where W passes over the line. At the
+ * line's ends Gibbs' overshoot multiplies it. */
 CLAIM(a_cylinder_peaks_at_its_ends)
 {
     for (size_t i = 0; i < PLACES; i++)
@@ -87,8 +88,8 @@ CLAIM(a_cylinder_peaks_at_its_ends)
                      CLOSED_FORM);
 }
 
-/* Lambert's sphere: the expected energy, speckle averaged out. No closed form is held here, but
- * that pixels do not matter. */
+/* Pixels do not change the expected energy of a Lambert sphere, whose speckle is averaged out. It
+ * is not compared with a closed form. */
 CLAIM(a_rough_sphere_wherever_pixels_lie)
 {
     double lowest = INFINITY, highest = -INFINITY;

@@ -1,7 +1,7 @@
 /* Targets in layers that bend sound: their echoes' travel times and levels, and their shadows. The
- * reference is the differential equation of rays through the profile itself, integrated in small
- * steps of height from sonar to target and back; only where the speed jumps does it use Snell's
- * law. Of ray tubes it takes differences between neighbouring rays. */
+ * reference integrates the differential equation of rays through the profile itself, in small steps
+ * of height from sonar to target and back. It uses Snell's law only where the speed jumps. Its ray
+ * tubes are differences between neighbouring rays. */
 #include "layered_sea.h"
 
 #define TIME     1e-6 /* relative */
@@ -10,7 +10,7 @@
 #define PIECES   4
 #define TURN     1e-5 /* rad, between neighbouring rays */
 
-/* Sound speed, linear between the ends of each piece, from the seabed upwards. */
+/* A piece of a profile, from the seabed upwards. The sound speed is linear between both ends. */
 struct piece {
     double bottom, speed_below, top, speed_above;
 };
@@ -39,7 +39,7 @@ static struct sea *open_sea(const struct profile *profile, size_t rows, size_t c
     size_t count = 0;
     for (const struct piece *piece = profile->pieces;
          piece < profile->pieces + PIECES && piece->top > 0.0; piece++) {
-        /* as thin as those that the library makes of a profile */
+        /* as thin as the layers that the library makes of a profile */
         const double rise = piece->speed_above - piece->speed_below;
         const size_t thin = (size_t)(fabs(rise) / 0.05) + 1;
         for (size_t i = 0; i < thin; i++) {
@@ -76,7 +76,7 @@ static struct ray step(struct ray ray, struct ray slope, double way, double rise
     return next;
 }
 
-/* Runge and Kutta's rule within a piece; a ray that runs level there comes to nothing. */
+/* Follows a ray within a piece by Runge and Kutta's rule. A level ray gets an infinite range. */
 static struct ray cross(const struct piece *piece, double from, double to, struct ray ray)
 {
     const double rise = (to - from) / STEPS, way = fabs(rise);
@@ -96,7 +96,7 @@ static struct ray cross(const struct piece *piece, double from, double to, struc
     return ray;
 }
 
-/* From one height to another, up or down, with a grazing angle at the first. */
+/* Follows a ray from one height to another, up or down, with a grazing angle at the first. */
 static struct ray follow(const struct profile *profile, double from, double to, double grazing)
 {
     struct ray ray = {0.0, 0.0, grazing};
@@ -119,7 +119,7 @@ static struct ray follow(const struct profile *profile, double from, double to, 
     return ray;
 }
 
-/* Grazing angle at the sonar of the ray to a point. */
+/* Returns the grazing angle at the sonar of the ray to a point. */
 static double launch_angle(const struct profile *profile, double range, double height)
 {
     double flat = 0.0, steep = 0.5 * PI;
@@ -131,7 +131,7 @@ static double launch_angle(const struct profile *profile, double range, double h
     return 0.5 * (flat + steep);
 }
 
-/* How range changes with the angle at which a ray begins. */
+/* Returns the change of range per rad of the angle at which a ray begins. */
 static double growth(const struct profile *profile, double from, double to, double grazing)
 {
     return fabs(follow(profile, from, to, grazing + TURN).range -
@@ -139,7 +139,7 @@ static double growth(const struct profile *profile, double from, double to, doub
            (2.0 * TURN);
 }
 
-/* amplitude: of a target of unit cross-section. */
+/* Sound at a target. amplitude: the echo of a unit cross-section. */
 struct sound {
     double time, grazing, amplitude;
 };
@@ -165,8 +165,8 @@ static void expect_time(const char *what, double time, double expected)
     assert_true(fabs(time / expected - 1.0) < TIME);
 }
 
-/* A small Lambert plate that faces its ray: all of it is equally far, but for the wavefront's
- * curvature, some 40 um. */
+/* Compares the echo of a small Lambert plate that faces its ray. All of it is equally far, but for
+ * the wavefront's curvature, some 40 um. */
 static void expect_plate(const struct profile *profile, double height, double range)
 {
     const double side = 0.2;
@@ -179,7 +179,7 @@ static void expect_plate(const struct profile *profile, double height, double ra
     object->heading_rad = -0.5 * PI;
     make_rough(object, 0.1);
     struct sound sound = {0};
-    for (int i = 0; i < 4; i++) { /* turning moves it */
+    for (int i = 0; i < 4; i++) { /* turning moves the plate */
         sea_ready(sea);
         sound = sound_at(profile, sea_centre(sea, 0)[1], sea_centre(sea, 0)[2]);
         object->pitch_rad = sound.grazing - 0.5 * PI;
@@ -201,8 +201,8 @@ static void expect_plate(const struct profile *profile, double height, double ra
                  decibels_of_energy(0.1 * side * side * pow(sound.amplitude, 2.0)), LEVEL_DB);
 }
 
-/* The phase of a glint tells its time. The wavefront curves in elevation alone. Returns the level
- * over what it should be, dB: through the pulse 0.06 in any water. */
+/* Compares the time of a glint, which its phase tells. Returns the level over the expected one, dB:
+ * through the pulse 0.06 in any water. The wavefront curves in elevation alone. */
 static double sphere_excess(const struct profile *profile, double height, double range)
 {
     const double a = 0.15;
@@ -234,7 +234,7 @@ CLAIM(echoes_from_within_layers)
         }
 }
 
-/* Where more than fans from the sonar meets targets, they lie in straight water; and rays that turn
+/* Targets must lie in straight water if more than fans from the sonar meets them. Rays that turn
  * over the seabed are not followed. */
 CLAIM(what_is_refused)
 {
@@ -253,7 +253,8 @@ CLAIM(what_is_refused)
 
 /* ---- shadows ---- */
 
-/* Column at which the seabed is hidden by an edge: the ray over it goes on, bent, to the seabed. */
+/* Returns the column at which an edge hides the seabed. The ray over the edge goes on, bent by
+ * *bend m, to the seabed. */
 static double column_behind(const struct sea *sea, const struct profile *profile, double range,
                             double height, double *bend)
 {
@@ -264,7 +265,7 @@ static double column_behind(const struct sea *sea, const struct profile *profile
     return sea_column(sea, REFERENCE * on_seabed.time);
 }
 
-/* A level plate high up; the last one, a slab, reaches through the sharp thermocline. */
+/* Level plates are high up. The last target, a slab, reaches through the sharp thermocline. */
 CLAIM(shadows_along_bent_rays)
 {
     static const struct {
@@ -299,7 +300,7 @@ CLAIM(shadows_along_bent_rays)
 
 /* ---- aspects ---- */
 
-/* A pillar's echo and shadow, as a synthetic aperture sees them. */
+/* Returns a pillar's echo and shadow, as a synthetic aperture sees them. */
 static const struct image *pillar_in(const struct profile *profile)
 {
     struct sea *sea = open_sea(profile, 161, 400, 44.0);

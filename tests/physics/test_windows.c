@@ -1,5 +1,6 @@
-/* A composite traces windows about what objects change. Against all of the patch, traced as a
- * reference: nothing outside, and inside the same echoes of the same rays, but for rounding. */
+/* A composite traces windows about the pixels that objects change. A reference that traces the
+ * whole patch changes nothing outside them. Inside, its rays bring the same echoes but for
+ * rounding. */
 #include "inject/compose.h"
 #include "sea.h"
 
@@ -25,7 +26,7 @@ static void add_target(struct sea *sea, double row, double column)
     place_in_pixels(sea_add_capsule(sea), row, column);
 }
 
-/* One after the other; each adds its objects and says how many windows they need. */
+/* The scenes. Each function adds its objects and returns how many windows they need. */
 static size_t lay_target(struct sea *sea)
 {
     add_target(sea, 250.0, 200.0);
@@ -34,7 +35,7 @@ static size_t lay_target(struct sea *sea)
 
 static size_t lay_aperture(struct sea *sea)
 {
-    sea->sonar->aperture_rad = -1.0; /* that of the resolution */
+    sea->sonar->aperture_rad = -1.0; /* the aperture of the resolution */
     add_target(sea, 250.0, 200.0);
     return 1;
 }
@@ -96,7 +97,7 @@ static bool is_in_windows(const struct injected *result, size_t i)
     return false;
 }
 
-/* A patch with speckle and levels of its own. */
+/* Returns a patch with speckle and uneven levels. */
 static const float *measured(struct sea *sea)
 {
     sea_ready(sea);
@@ -108,8 +109,8 @@ static const float *measured(struct sea *sea)
     return pixels;
 }
 
-/* Within the windows: the rms difference of the images over that of what was changed, and of
- * energies over their rms. */
+/* Raises *image and *energy to the differences within the windows: the rms difference of the images
+ * over the rms change, and that of the energies over their rms. */
 static void add_differences(double *image, double *energy, const struct injected *window,
                             const struct injected *whole, const float *pixels)
 {
@@ -126,9 +127,8 @@ static void add_differences(double *image, double *energy, const struct injected
     *energy = fmax(*energy, sqrt(differences[1] / sums[1]));
 }
 
-/* What the whole patch shows beyond the windows: changed pixels; and energy of two interactions
- * over that of plain seabed, as rays find it: many pixels at once, since few rays go there and each
- * brings much. */
+/* Sums over the pixels beyond the windows: changed ones, energy of two interactions, and energy of
+ * plain seabed. Many pixels are summed, since few rays go there and each brings much. */
 struct beyond {
     double pixels, changed, energy, seabed;
 };
