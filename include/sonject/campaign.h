@@ -16,12 +16,11 @@ typedef struct sonject_campaign sonject_campaign;
 
 /* Reads a campaign file and checks its keys, its distributions, its swaths (read whole, once) and
  * scenes with the ends of all distributions. path: YAML file. params: overrides of the campaign's
- * keys, and whether the base scene and targets may hold code; params->text must be NULL. params may
- * be NULL (all defaults). Relative file names are resolved against the campaign file's folder.
- * Names that overrides give to scene and swaths are resolved against the working directory. The
- * message of a failure names file:line:column, the key and the mistake. On success *campaign is the
- * caller's, for sonject_campaign_release, before its context; on failure it is NULL. Errors:
- * ARGUMENT, INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+ * keys; params->text must be NULL. params may be NULL (all defaults). Relative file names are
+ * resolved against the campaign file's folder. Names that overrides give to scene and swaths are
+ * resolved against the working directory. The message of a failure names file:line:column, the key
+ * and the mistake. On success *campaign is the caller's, for sonject_campaign_release, before its
+ * context; on failure it is NULL. Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED, MEMORY. */
 SONJECT_API sonject_status sonject_campaign_read(sonject_context *context, const char *path,
                                                  const sonject_scene_read_params *params,
                                                  sonject_campaign **campaign);

@@ -24,8 +24,8 @@ typedef struct sonject_convert_params {
     const char *input;   /* any image, array or recording that runs can read */
     const char *output;  /* .tif, .png, .npy or .h5; any format with `into` */
     const char *into;    /* file of the output's size and type; the output is a copy of it with the
-                            input's samples, all else untouched, except that PNG and JPEG are written
-                            anew. NULL: none */
+                            input's samples, all else untouched. PNG and JPEG are refused. NULL: no
+                            copy */
     const char *channel; /* channel; see sonject_quicklook_params, also for array and geometry */
     const char *array;
     const char *geometry; /* geometry in slant range; NULL: the input's own. Refused for an input in
