@@ -198,6 +198,17 @@ static int64_t cell_pitch(const struct data_set *set, uint32_t cell_height)
     return cell_height + LINE * most + 4 + CELL_GAP;
 }
 
+/* Returns the class of the target or, in an image without one, of the first labelled clutter. */
+static const char *name_of_image(const struct data_set *set, const json_t *record)
+{
+    const json_t *first = json_array_get(json_object_get(record, "annotations"), 0);
+    const json_int_t category = json_integer_value(json_object_get(first, "category_id"));
+    const json_t *classes = json_object_get(set->head, "classes");
+    const char *target = member_text(record, "target");
+    const char *clutter = json_string_value(json_array_get(classes, (size_t)category - 1));
+    return *target || !clutter ? target : clutter;
+}
+
 static sonject_status draw_cell(const struct data_set *set, struct canvas *canvas, uint64_t id,
                                 int64_t x, int64_t y)
 {
@@ -211,7 +222,7 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
     if (status == SONJECT_OK) {
         draw_thumbnail(canvas, &small, x, y);
         draw_boxes(canvas, record, small.scales, x, y);
-        draw_caption(canvas, x, y + small.sides[0], id, member_text(record, "target"));
+        draw_caption(canvas, x, y + small.sides[0], id, name_of_image(set, record));
     }
     free(small.values);
     json_decref(record);

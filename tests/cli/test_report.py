@@ -209,6 +209,16 @@ def test_captions_stand_under_their_chips(sonject, data_set, tmp_path, rows, col
         assert len(band) == 28
 
 
+def test_images_of_clutter_alone_have_its_class_for_a_caption(sonject, data_set, tmp_path):
+    stone = "[{class: stone, object: {shape: sphere, diameter: 20 cm}}]"
+    for clutter, is_named in (("{alone: 1, objects: %s}" % stone, True), ("{alone: 1, labelled: false, objects: %s}" % stone, False)):
+        sheet = make(sonject, tmp_path, "empty=0", f"clutter={clutter}", "images=2")
+        page = page_data(tmp_path / "wide")["sheet"]
+        left, top = place(page, 0)
+        caption = sheet[top + 64 : top + page["height"] - 6, left + 16 : left + 60]
+        assert (caption < 128).any() == is_named
+
+
 def make(sonject, folder, *settings):
     sonject.done("campaign", "campaign.yaml", "-o", "wide", "--overwrite", *(word for each in settings for word in ("--set", each)))
     return read_png(folder / "wide" / "contact_sheet.png")
