@@ -44,7 +44,7 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
     for shard in (3, 1):
         answer = sonject("run", scene, "-o", "result", "--shard", f"{shard}/4")
         assert (answer.returncode, answer.stdout) == (0, "")
-        assert answer.stderr == "sonject: the shard is done; once all are: sonject merge result\n"
+        assert answer.stderr == "sonject: the shard is done; after all shards, run sonject merge result\n"
     assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2, 4;")
     stopped = sonject("run", scene, "-o", "result", "--shard", "2/4", "--exit-after", "1e-9")
     assert stopped.returncode == 85
