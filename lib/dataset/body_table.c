@@ -41,7 +41,7 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
         unit = strchr(unit + 1, '[');
     const size_t length = strlen(name);
     if (unit && name[length - 1] != ']')
-        return tree_failure(&reader->file, place, name, "ends its unit with no ]");
+        return tree_failure(&reader->file, place, name, "has a unit without a closing ]");
     if (unit) {
         name[length - 1] = 0;
         *unit = 0;
@@ -49,7 +49,7 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
     }
     if (reader->weight && strcmp(name, reader->weight) == 0) {
         reader->weight_place = field;
-        return unit ? tree_failure(&reader->file, place, name, "is a weight, without a unit")
+        return unit ? tree_failure(&reader->file, place, name, "is a weight, which has no unit")
                     : SONJECT_OK;
     }
     CHECK(campaign_check_key(&reader->file, place, name, name, true));

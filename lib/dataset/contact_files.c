@@ -367,8 +367,8 @@ static sonject_status read_labels(struct contact_reader *reader, const char *pat
     if (reader->set->count == 0)
         return input_failure(reader->report, path, "holds no contacts");
     if (reader->choice->class_count == 0 && class_count > 1)
-        report_note(reader->report, "contacts of %zu classes are taken as one: %s", class_count,
-                    classes);
+        report_note(reader->report, "contacts of %zu classes are treated as one class: %s",
+                    class_count, classes);
     pair_all(reader->set);
     return SONJECT_OK;
 }

@@ -246,7 +246,7 @@ def test_altitudes_by_first_returns_are_those_at_the_objects(sonject, tmp_path):
     assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx(at[1], rel=0.02)
     two = "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 0, column: 300}}, " \
           "{shape: sphere, diameter: 0.4 m, position: {row: 767, column: 300}}]"
-    told = re.search(r"the altitude goes from (\S+) to (\S+) m over the objects' pings",
+    told = re.search(r"the altitude varies from (\S+) to (\S+) m over the objects' pings",
                      sonject.done("check", "scene.yaml", "--set", two).stdout)
     assert [float(number) for number in told.groups()] == pytest.approx([at[0], at[3]], rel=0.02)
     patch = sonject.done("check", "scene.yaml", "--set", "patch={row: 300, column: 200, rows: 168, columns: 512}", "--set",

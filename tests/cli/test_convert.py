@@ -160,7 +160,7 @@ def test_png_goes_out_as_a_new_png(sonject, tmp_path, sides):
     before = (sides[0] // 64).astype("u1")
     (tmp_path / "line.png").write_bytes(images.png_bytes(before))
     answer = check_injection(sonject, tmp_path, "line.png", before, ".png")
-    assert "note: image.png is written anew" in answer.stderr
+    assert "note: image.png is a new file" in answer.stderr
     assert sonject.done("run", "scene.yaml", "-o", "again", "--quiet").stderr == ""
     assert_refused(sonject("convert", "line.png", "b.png", "--into", "line.png"), 3,
                    "not changed in place: write a new .tif")

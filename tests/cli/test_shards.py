@@ -68,10 +68,10 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
         assert answer.returncode == 0 and "already" in answer.stderr
     # merge checks a merged folder, too
     (folder / "shadow.png").rename(tmp_path / "away")
-    assert_refused(sonject("merge", "result"), 3, "result: is merged already, but shadow.png")
+    assert_refused(sonject("merge", "result"), 3, "result: is already merged, but shadow.png")
     (tmp_path / "away").rename(folder / "shadow.png")
     labelled = sonject("merge", "result", "--labels", "yolo")
-    assert_refused(labelled, 3, "result: is merged already, without those labels")
+    assert_refused(labelled, 3, "result: is already merged, without those labels")
     assert {path.name for path in folder.iterdir()} == RESULTS
 
 
@@ -212,7 +212,7 @@ def test_an_accuracy_takes_as_many_rays_in_shards_and_stages(sonject, scene, tmp
     rays = json.loads((tmp_path / "one/run.json").read_text())["options"]["ray_scale"]
     error = json.loads((tmp_path / "one/truth.json").read_text())["energy_error"]
     assert rays != 1 and 0 < error < 0.04
-    assert f"accuracy: energies of changed pixels are known to {100 * error:.2g} %" in answer.stderr
+    assert f"accuracy: energies of changed pixels have errors of {100 * error:.2g} %" in answer.stderr
     for shard in ("1/2", "2/2"):
         command(sonject, "run", scene, "-o", "parts", "--shard", shard, *asked)
     command(sonject, "merge", "parts")
