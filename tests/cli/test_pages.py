@@ -297,7 +297,7 @@ MISTAKES = {
     "cannot be seen ...": "sonject run scene.yaml -o drowned --set 'objects[0]={shape: sphere, diameter: 10 cm, "
                                 "burial: 9 cm, level: {target_strength: -120 dB}}' && false",
     "no device has ...": "sonject run scene.yaml -o nowhere --device none",
-    "missing of ... shards: ...": "sonject run scene.yaml -o part --shard 1/2 && sonject merge part",
+    "of ... shards, these are missing: ...": "sonject run scene.yaml -o part --shard 1/2 && sonject merge part",
 }
 
 

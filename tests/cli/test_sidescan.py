@@ -173,10 +173,10 @@ def test_campaigns_know_the_highest_ping(sonject, tmp_path, line):
 
 @pytest.mark.parametrize("more, words", [
     ("medium: {layers: [{bottom: 0 m, sound_speed: 1500 m/s}, {bottom: 3 m, sound_speed: 1520 m/s}]}",
-     "begins at 1.575 m slant range, in the water column, which no patch may where layers bend the sound: begin with "
-     "column "),
+     "begins at 1.575 m slant range, in the water column, which is not possible where layers bend the sound: begin "
+     "the patch at column "),
     ("seabed: {relief: [mound: {position: {row: 30, column: 120}, height: 0.1 m, radius: 1 m}]}",
-     "in the water column, which no patch may over a seabed with relief: begin with column 40, behind the bottom's "
+     "in the water column, which is not possible over a seabed with relief: begin the patch at column 40, behind the bottom's "
      "first return at 6.000 m"),
 ])
 def test_what_may_not_begin_in_the_water_column_says_why(sonject, tmp_path, line, more, words):
