@@ -61,7 +61,7 @@ static int work(const void *verb_options)
     if (!shard_parse("campaign", options->shard, &index, &count))
         return EXIT_CODE_USAGE;
     if (options->shard && options->only.is_given) {
-        message("campaign: --shard and --only exclude each other");
+        message("campaign: --shard and --only cannot be used together");
         return EXIT_CODE_USAGE;
     }
     const bool is_part = options->shard || options->only.is_given;

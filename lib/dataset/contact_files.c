@@ -110,7 +110,7 @@ sonject_status contact_reader_find_image(struct contact_reader *reader, const ch
         return SONJECT_OK;
     if (*name == 0 || !text_is_printable(name))
         return input_failure(reader->report, place,
-                             *name ? "the image's name is no text" : "no image is named");
+                             *name ? "the image's name must be a text" : "no image is named");
     char *path = find_file(reader, name, &has_memory);
     if (!path && has_memory)
         return input_failure(reader->report, place,

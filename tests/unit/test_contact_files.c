@@ -183,7 +183,7 @@ WITH_LABELS(test_coco_that_is_wrong)
          "image"},
         {"{\"images\": [{\"id\": 7, \"file_name\": \"a\\u0007.png\"}],\n" CATEGORIES
          "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
-         "%/l.json: annotations[0]: the image's name is no text"},
+         "%/l.json: annotations[0]: the image's name must be a text"},
         {"{\"images\": [{\"id\": 7, \"file_name\": \"b.npy\", \"width\": 0}],\n" CATEGORIES
          "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
          "%/l.json: annotations[0]: its image's width or height is not a whole number of pixels"},
