@@ -51,7 +51,7 @@ static void find_ceiling(const struct stored_swath *swath, struct calibration *f
     const double ceiling = swath->is_complex ? INFINITY : find_saturation(swath->values, count);
     size_t clipped = 0;
     double squares = 0.0;
-    found->full_scale.how = "stored number with the most pixels, far more than the number below it";
+    found->full_scale.how = "largest stored number, which far more pixels have than the next one";
     found->clipped.how = "share of pixels with this number; errors from strips of rows";
     found->full_scale.value = ceiling;
     if (!isfinite(ceiling)) {
