@@ -153,20 +153,20 @@ static bool parse_option(const struct verb *verb, int count, char **texts, int *
 static bool take_operand(const struct verb *verb, const char *text, void *options)
 {
     if (!verb->operand) {
-        message(verb->name, ": what is \"", text, "\"? The verb takes options only");
+        message(verb->name, ": what is \"", text, "\"? This verb takes only options");
         return false;
     }
     const char **operand = member(options, verb->operand_offset);
     if (*operand && verb->second_operand && !*(const char **)member(options, verb->second_offset))
         operand = member(options, verb->second_offset);
     if (*operand && verb->second_operand) {
-        message(verb->name, ": ", verb->operand, " and ", verb->second_operand,
-                " are wanted; what is \"", text, "\"?");
+        message(verb->name, ": takes ", verb->operand, " and ", verb->second_operand,
+                "; what is \"", text, "\"?");
         return false;
     }
     if (*operand) {
-        message(verb->name, ": one ", verb->operand, " is wanted, not both \"", *operand,
-                "\" and \"", text, "\"");
+        message(verb->name, ": takes one ", verb->operand, ", not both \"", *operand, "\" and \"",
+                text, "\"");
         return false;
     }
     if (text[0] == '\0') {

@@ -20,20 +20,20 @@ struct calibrate_options {
 #define MEMBER(name) offsetof(struct calibrate_options, name)
 
 static const struct argument arguments[] = {
-    {"--output", "-o", "FILE", "write it there instead of to standard output", ARGUMENT_TEXT, false,
-     MEMBER(output)},
-    {"--picture", NULL, "PNG", "draw a page that shows why to believe it", ARGUMENT_TEXT, false,
-     MEMBER(picture)},
+    {"--output", "-o", "FILE", "write the result to this file instead of standard output",
+     ARGUMENT_TEXT, false, MEMBER(output)},
+    {"--picture", NULL, "PNG", "draw the measurements, to judge the result by", ARGUMENT_TEXT,
+     false, MEMBER(picture)},
     {"--json", NULL, NULL, "write JSON, which scenes take as well", ARGUMENT_FLAG, false,
      MEMBER(json)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+    {"--channel", NULL, "port|starboard|N", "channel of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
-    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
-     MEMBER(array)},
-    GEOMETRY_NUMBER(struct calibrate_options, "--row-spacing", "M", "along-track distance of rows",
-                    row_spacing),
+    {"--array", NULL, "NAME", "array of an HDF5 or MATLAB file that has several", ARGUMENT_TEXT,
+     false, MEMBER(array)},
+    GEOMETRY_NUMBER(struct calibrate_options, "--row-spacing", "M",
+                    "distance between rows, along the track", row_spacing),
     GEOMETRY_NUMBER(struct calibrate_options, "--column-spacing", "M",
-                    "slant range distance of columns", column_spacing),
+                    "distance between columns, in slant range", column_spacing),
     GEOMETRY_NUMBER(struct calibrate_options, "--first-range", "M",
                     "slant range of the first column", first_range),
 };
@@ -77,8 +77,9 @@ const struct verb calibrate_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "A scene takes the file as input.calibration; keys of its own win. Each estimate has\n"
-             "a standard error and how it was found, or the reason why it was not seen.",
+    .notes =
+        "A scene names the file as input.calibration; the scene's own keys take precedence. Each\n"
+        "estimate has a standard error and its method, or the reason why there is none.",
     .options_size = sizeof(struct calibrate_options),
     .work = work,
 };

@@ -21,11 +21,12 @@ static const struct argument arguments[] = {
      offsetof(struct campaign_options, stage.output)},
     {"--set", NULL, "KEY=VALUE", "change the campaign, e.g. --set images=50; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct campaign_options, overrides)},
-    {"--shard", NULL, "I/K", "only images with id mod K = I - 1; then sonject merge DIR",
-     ARGUMENT_TEXT, false, offsetof(struct campaign_options, shard)},
-    {"--only", NULL, "ID", "only this image, anew; ids count from 0", ARGUMENT_WHOLE, false,
-     offsetof(struct campaign_options, only)},
-    {"--exit-after", NULL, "SECONDS", "stops after so long, as after SIGTERM", ARGUMENT_NUMBER,
+    {"--shard", NULL, "I/K",
+     "make only images with id mod K = I - 1; finish with sonject merge DIR", ARGUMENT_TEXT, false,
+     offsetof(struct campaign_options, shard)},
+    {"--only", NULL, "ID", "make only this image, even if it exists; ids count from 0",
+     ARGUMENT_WHOLE, false, offsetof(struct campaign_options, only)},
+    {"--exit-after", NULL, "SECONDS", "stops after this time, as after SIGTERM", ARGUMENT_NUMBER,
      false, offsetof(struct campaign_options, exit_after)},
     {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
      offsetof(struct campaign_options, overwrites)},
@@ -60,7 +61,7 @@ static int work(const void *verb_options)
     if (!shard_parse("campaign", options->shard, &index, &count))
         return EXIT_CODE_USAGE;
     if (options->shard && options->only.is_given) {
-        message("campaign: --shard and --only exclude each other");
+        message("campaign: --shard and --only cannot be used together");
         return EXIT_CODE_USAGE;
     }
     const bool is_part = options->shard || options->only.is_given;
@@ -76,8 +77,8 @@ const struct verb campaign_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "Images that DIR has already are kept: the same command goes on where it was stopped.\n"
-        "The bytes of all files but times.json depend on the campaign and its inputs alone.",
+        "Images that DIR already has are kept: after a stop, the same command continues the work.\n"
+        "The bytes of all files but times.json depend only on the campaign and its inputs.",
     .options_size = sizeof(struct campaign_options),
     .work = work,
 };

@@ -50,7 +50,7 @@ static int work(const void *verb_options)
 
 const struct verb check_verb = {
     .name = "check",
-    .summary = "checks a scene against its image and draws the geometry, or a campaign",
+    .summary = "checks a scene and draws its geometry, or checks a campaign",
     .operand = "SCENE.yaml",
     .operand_offset = offsetof(struct scene_arguments, path),
     .arguments = arguments,

@@ -20,13 +20,14 @@ struct convert_options {
 static const struct argument arguments[] = {
     {"--into", NULL, "FILE", "make OUT a copy of FILE with IN's samples", ARGUMENT_TEXT, false,
      MEMBER(into)},
-    {"--db", NULL, "MIN:MAX", "make 8 bit grey levels, black and white at these over full scale",
-     ARGUMENT_TEXT, false, MEMBER(decibels)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+    {"--db", NULL, "MIN:MAX",
+     "write 8 bit grey levels, black at MIN and white at MAX, dB over full scale", ARGUMENT_TEXT,
+     false, MEMBER(decibels)},
+    {"--channel", NULL, "port|starboard|N", "channel of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
-    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
-     MEMBER(array)},
-    GEOMETRY_ARGUMENTS(struct convert_options, "resample the columns to equal steps of it"),
+    {"--array", NULL, "NAME", "array of an HDF5 or MATLAB file that has several", ARGUMENT_TEXT,
+     false, MEMBER(array)},
+    GEOMETRY_ARGUMENTS(struct convert_options, "resample the columns to equal steps of this range"),
 };
 
 static int work(const void *verb_options)
@@ -60,17 +61,18 @@ static int work(const void *verb_options)
 
 const struct verb convert_verb = {
     .name = "convert",
-    .summary = "makes a file of one format from a file of another",
+    .summary = "converts an image or recording to another file format",
     .operand = "IN",
     .operand_offset = MEMBER(input),
     .second_operand = "OUT",
     .second_offset = MEMBER(output),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "Without --db nothing is lost. OUT is .tif, .png, .npy or .h5; with --into FILE it is "
-             "of FILE's format,\n"
-             "XTF, JSF and MATLAB too. Samples that a file cannot hold are refused, never cut;\n"
-             "numbers beyond a JSF file's 16 bits alone are cut to its largest.",
+    .notes =
+        "Without --db nothing is lost. OUT is .tif, .png, .npy or .h5; with --into FILE it has "
+        "FILE's format,\n"
+        "which may also be XTF, JSF or MATLAB. Samples that a file cannot hold are refused, never\n"
+        "clipped; only in JSF files, numbers beyond 16 bits become the largest one.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

@@ -45,14 +45,15 @@ static int work(const void *verb_options)
 
 const struct verb elements_verb = {
     .name = "elements",
-    .summary = "writes what each hydrophone of an array hears of a scene, ping by ping",
+    .summary = "writes the time series of each hydrophone of an array, ping by ping",
     .operand = "SCENE.yaml",
     .operand_offset = offsetof(struct elements_options, scene.path),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes =
-        "The array is the scene's section elements. series.npy is [ping, hydrophone, sample];\n"
-        "elements.json says where and when. In composite mode only targets are heard.",
+    .notes = "The scene's section elements describes the array. series.npy is [ping, hydrophone, "
+             "sample];\n"
+             "elements.json has positions and times. In composite mode, the series hold only the "
+             "targets.",
     .options_size = sizeof(struct elements_options),
     .work = work,
 };

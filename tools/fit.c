@@ -16,13 +16,14 @@ struct fit_options {
 };
 
 static const struct argument arguments[] = {
-    {"--output", "-o", "FITTED.yaml", "the campaign to write, beside the one that is fitted",
-     ARGUMENT_TEXT, true, offsetof(struct fit_options, stage.output)},
+    {"--output", "-o", "FITTED.yaml",
+     "the fitted campaign to write, in the folder of CAMPAIGN.yaml", ARGUMENT_TEXT, true,
+     offsetof(struct fit_options, stage.output)},
     {"--boxes", NULL, "both|highlight|shadow",
-     "what boxes are drawn around: the highlight, the shadow, or both (both); a class with "
-     "shadow or highlight in its name tells it itself",
+     "what the boxes enclose: highlight, shadow or both (both); a class with shadow or highlight "
+     "in its name decides for its own boxes",
      ARGUMENT_TEXT, false, offsetof(struct fit_options, boxes)},
-    {"--class", NULL, "NAME", "takes contacts of this class alone; may be repeated", ARGUMENT_TEXTS,
+    {"--class", NULL, "NAME", "uses only contacts of this class; may be repeated", ARGUMENT_TEXTS,
      false, offsetof(struct fit_options, classes)},
     {"--set", NULL, "KEY=VALUE", "changes the campaign that is fitted; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct fit_options, overrides)},
@@ -80,10 +81,13 @@ const struct verb fit_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "CONTACTS: ten or more in images of that sonar: a COCO file (.json), a .csv file (image,\n"
-        "row, column, rows, columns), a folder of YOLO's or VOC's labels; or a .yaml file of\n"
-        "published quantiles. Real and injected contacts are measured alike, and what is drawn is\n"
-        "moved until their quantiles agree. A page beside FITTED.yaml (.html) shows how well.",
+        "CONTACTS are ten or more labels in images of that sonar: a COCO file (.json), a .csv "
+        "file\n"
+        "(image, row, column, rows, columns) or a folder of YOLO or VOC labels; or a .yaml file "
+        "of\n"
+        "published quantiles. Real and injected contacts are measured alike, and the campaign's "
+        "draws\n"
+        "are moved until the quantiles agree. A page beside FITTED.yaml (.html) shows how well.",
     .options_size = sizeof(struct fit_options),
     .work = work,
 };

@@ -52,7 +52,7 @@ static int work(const void *verb_options)
 
 const struct verb form_verb = {
     .name = "form",
-    .summary = "forms the image of what was traced; writes what run does",
+    .summary = "forms the image from a file of sonject trace; writes the files that run writes",
     .operand = "FILE",
     .operand_offset = offsetof(struct form_options, file),
     .arguments = arguments,

@@ -33,10 +33,10 @@ struct geometry_arguments {
      offsetof(structure, geometry.range_axis)},                                                    \
         GEOMETRY_NUMBER(structure, "--altitude", "M", "height of the sonar over the seabed",       \
                         altitude),                                                                 \
-        GEOMETRY_NUMBER(structure, "--row-spacing", "M", "along-track distance of rows",           \
+        GEOMETRY_NUMBER(structure, "--row-spacing", "M", "distance between rows, along the track", \
                         row_spacing),                                                              \
-        GEOMETRY_NUMBER(structure, "--column-spacing", "M", "slant range distance of columns",     \
-                        column_spacing),                                                           \
+        GEOMETRY_NUMBER(structure, "--column-spacing", "M",                                        \
+                        "distance between columns, in slant range", column_spacing),               \
         GEOMETRY_NUMBER(structure, "--first-range", "M", "slant range of the first column",        \
                         first_range)
 

@@ -20,15 +20,15 @@
 #define MEMBER(name) offsetof(struct init_options, name)
 
 static const struct argument arguments[] = {
-    {"--output", "-o", "SCENE.yaml", "the scene; else the image's name with .yaml", ARGUMENT_TEXT,
-     false, MEMBER(output)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+    {"--output", "-o", "SCENE.yaml", "scene to write; by default the image's name with .yaml",
+     ARGUMENT_TEXT, false, MEMBER(output)},
+    {"--channel", NULL, "port|starboard|N", "channel of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
-    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
-     MEMBER(array)},
-    {"--target", NULL, "FILE", "a mesh (STL, PLY, OBJ) or a target (YAML); else a cylinder",
+    {"--array", NULL, "NAME", "array of an HDF5 or MATLAB file that has several", ARGUMENT_TEXT,
+     false, MEMBER(array)},
+    {"--target", NULL, "FILE", "a mesh (STL, PLY, OBJ) or a target (YAML); by default a cylinder",
      ARGUMENT_TEXT, false, MEMBER(target)},
-    {"--campaign", NULL, NULL, "also write a campaign, of both sides where the image has them",
+    {"--campaign", NULL, NULL, "also write a campaign, with both sides if the image has two",
      ARGUMENT_FLAG, false, MEMBER(makes_campaign)},
 };
 
@@ -112,7 +112,7 @@ static bool are_free(const struct interview *interview)
         interview->campaign, interview->other_calibration, interview->other_picture};
     for (int i = 0; i < 6; i++)
         if (*files[i] && file_exists(files[i])) {
-            message(files[i], ": is there already: choose another scene (-o), or remove it");
+            message(files[i], ": already exists: choose another scene (-o), or remove it");
             return false;
         }
     return true;
@@ -337,18 +337,18 @@ static int work(const void *verb_options)
 
 const struct verb init_verb = {
     .name = "init",
-    .summary = "asks what an image does not tell of itself, and writes a scene for it",
+    .summary = "asks for what an image file does not say, and writes a scene for it",
     .operand = "IMAGE",
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "Calibrates the image, then asks, one line each, for what is left: spacings and ranges\n"
-        "that its file does not tell, altitude, frequency, bandwidth, a sidescan's array, the "
-        "unit\n"
-        "of a mesh. Enter takes what stands in brackets. Answers may have units, and may come "
-        "from\n"
-        "a file (init IMAGE <answers). Ends as sonject check does.",
+        "Calibrates the image, then asks for the rest, line by line: spacings and ranges that the "
+        "file\n"
+        "does not have, altitude, frequency, bandwidth, a sidescan's array, a mesh's unit. Enter "
+        "takes\n"
+        "the answer in brackets. Answers may have units, and may come from a file (init IMAGE\n"
+        "<answers). At the end it prints what sonject check prints.",
     .options_size = sizeof(struct init_options),
     .work = work,
 };

@@ -152,17 +152,18 @@ static void add_input(FILE *file, const struct interview *interview)
     }
     fputs("  geometry:\n", file);
     add_key(file, "    ", "row_spacing", answer_about(interview, "input.geometry.row_spacing"),
-            "of pings");
+            "between pings");
     add_key(file, "    ", "column_spacing",
-            answer_about(interview, "input.geometry.column_spacing"), "of samples, in slant range");
+            answer_about(interview, "input.geometry.column_spacing"),
+            "between samples, in slant range");
     add_key(file, "    ", "first_slant_range",
             answer_about(interview, "input.geometry.first_slant_range"),
             interview->is_reversed ? "of the nadir column" : "of column 0");
     add_key(file, "    ", "nadir_column", answer_about(interview, "input.geometry.nadir_column"),
-            "the last one: range grows to the left");
+            "the last column: range grows to the left");
     add_key(file, "    ", "side", answer_about(interview, "input.geometry.side"),
-            interview->is_reversed ? "left of that"
-                                   : "of the nadir column, which the calibration has");
+            interview->is_reversed ? "left of the nadir column"
+                                   : "of the nadir column, which is in the calibration");
 }
 
 static void add_sonar(FILE *file, const struct interview *interview)
@@ -175,7 +176,7 @@ static void add_sonar(FILE *file, const struct interview *interview)
             "centre of the band");
     add_key(file, "  ", "bandwidth", answer_about(interview, "sonar.bandwidth"),
             interview->assumes_bandwidth
-                ? "c / 2 over the column spacing: write your sonar's, which no file tells"
+                ? "c / 2 divided by the column spacing: write your sonar's own, which no file has"
                 : "range resolution is c / 2B");
     add_key(file, "  ", "altitude", answer_about(interview, "sonar.altitude"), "over the seabed");
     if (!array)
@@ -209,13 +210,15 @@ bool write_scene(const struct interview *interview)
         fprintf(file, "\n    position: {row: %.0f, column: %.0f} # a plain place of the seabed",
                 interview->plain_row, interview->plain_column);
     const double level_db = highest_level_db(interview);
-    fprintf(
-        file,
-        "\n    heading: 30 deg # from along-track towards range\n"
-        "    # of the peak; measured ones have 8 to 19 dB. Without this line the material decides\n"
-        "    level: {over_seabed: %.0f dB}%s\n",
-        level_db,
-        level_db < USUAL_LEVEL_DB ? " # as the image's ceiling allows: more is cut off" : "");
+    fprintf(file,
+            "\n"
+            "    heading: 30 deg # from along-track towards range\n"
+            "    # of the echo's peak; measured ones have 8 to 19 dB. Without this line the "
+            "material decides it\n"
+            "    level: {over_seabed: %.0f dB}%s\n",
+            level_db,
+            level_db < USUAL_LEVEL_DB ? " # as much as the image's ceiling allows: more is cut off"
+                                      : "");
     return finish(file, part, interview->scene);
 }
 
@@ -277,8 +280,8 @@ static void add_grey(FILE *file, const struct interview *interview)
     const double black = white - interview->ceiling_over_seabed_db - SHADOWS_DB;
     if (*interview->other_calibration && interview->full_scale > 255.0 && isfinite(black))
         fprintf(file,
-                "grey: [%.0f dB, %.0f dB] # black and white of 8 bit images; without it they have "
-                "16 bits\n",
+                "grey: [%.0f dB, %.0f dB] # black and white of 8 bit images; without this line "
+                "images have 16 bits\n",
                 floor(black), ceil(white));
 }
 
@@ -296,7 +299,7 @@ static void add_swaths(FILE *file, const struct interview *interview, const char
     if (has_both)
         fputs("splits: {train: 0.5, val: 0.5} # no swath is in two splits\n", file);
     else
-        fputs("# splits: {train: 0.7, val: 0.3} # with more swaths, none of which is in two\n",
+        fputs("# splits: {train: 0.7, val: 0.3} # with more swaths; no swath is in two splits\n",
               file);
     fputs("labels: [yolo]\nswaths:\n", file);
     for (int i = 0; i < (has_both ? 2 : 1); i++) {
@@ -310,7 +313,7 @@ static void add_swaths(FILE *file, const struct interview *interview, const char
                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
         fprintf(file,
                 "    # avoid: [{along_track: [%.3g m, %.3g m], slant_range: [%.3g m, %.3g m]}] # "
-                "for example; a list\n",
+                "boxes of contacts to keep away from\n",
                 0.4 * along_m, 0.45 * along_m, checked.first_m + 0.3 * wide_m,
                 checked.first_m + 0.5 * wide_m);
     }
@@ -325,7 +328,7 @@ static void add_clutter(FILE *file, const char *text)
     fprintf(file,
             "clutter:\n"
             "  alone: 0.25 # this share of the images shows a stone and no target\n"
-            "  number: 0 # beside a target, which they might hide\n"
+            "  number: 0 # no stones beside a target: they might hide it\n"
             "  objects:\n"
             "  - class: stone\n"
             "    object: {shape: ellipsoid, material: rock}\n"
@@ -344,21 +347,24 @@ bool write_campaign(const struct interview *interview, const char *checked)
         return false;
     fprintf(file,
             "# Make it: sonject campaign %s -o FOLDER. sonject help KEY explains keys.\n"
-            "sonject_campaign: 1\nscene: %s # all that is not drawn\nimages: 500\n",
+            "sonject_campaign: 1\n"
+            "scene: %s # has all values that are not drawn\n"
+            "images: 500\n",
             last_part(interview->campaign), last_part(interview->scene));
     add_chip(file, interview, checked);
     fputs("empty: 0.25 # this share of the images shows bare seabed\n"
-          "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # what nobody would see is drawn again\n",
+          "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # targets that nobody would see are drawn "
+          "again\n",
           file);
     add_grey(file, interview);
     add_swaths(file, interview, checked);
-    fprintf(
-        file,
-        "draw: # any key of a scene\n"
-        "  objects[].heading: {uniform: [0 deg, 360 deg]}\n"
-        "  objects[].burial.fraction: {uniform: [0, 0.3]}\n"
-        "  objects[].level.over_seabed: {uniform: [%.0f dB, %.0f dB]} # of the peak\ntargets:\n",
-        FAINTEST_DB, USUAL_LEVEL_DB);
+    fprintf(file,
+            "draw: # any key of a scene\n"
+            "  objects[].heading: {uniform: [0 deg, 360 deg]}\n"
+            "  objects[].burial.fraction: {uniform: [0, 0.3]}\n"
+            "  objects[].level.over_seabed: {uniform: [%.0f dB, %.0f dB]} # of the echo's peak\n"
+            "targets:\n",
+            FAINTEST_DB, USUAL_LEVEL_DB);
     add_name(file, "  - class: ", interview);
     fputs("\n    object: {", file);
     add_target(file, interview, ", ");

@@ -24,11 +24,11 @@ static const struct question row_spacing = {
 static const struct question column_spacing = {
     "input.geometry.column_spacing",
     "column spacing, from sample to sample in slant range (such as 2.5 cm)", NULL};
-static const struct question first_range = {"input.geometry.first_slant_range",
-                                            "slant range of the first column (such as 30 m), or, "
-                                            "where range grows to the left, of the last one "
-                                            "(such as 30 m left)",
-                                            NULL};
+static const struct question first_range = {
+    "input.geometry.first_slant_range",
+    "slant range of the first column (such as 30 m); if range grows to the left, of the last "
+    "column (such as 30 m left)",
+    NULL};
 static const struct question side = {
     "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
 static const struct question altitude = {
@@ -36,12 +36,12 @@ static const struct question altitude = {
 static const struct question frequency = {"sonar.frequency", "centre frequency (such as 100 kHz)",
                                           NULL};
 static const struct question bandwidth = {
-    "sonar.bandwidth", "bandwidth; if you don't know it, c / 2 over the column spacing", NULL};
-static const struct question array_length = {"sonar.array.length",
-                                             "length of a sidescan's array, or its beam width "
-                                             "(such as 0.5 m or 0.4 deg; nothing for synthetic "
-                                             "aperture)",
-                                             ""};
+    "sonar.bandwidth", "bandwidth (if unknown, take c / 2 divided by the column spacing)", NULL};
+static const struct question array_length = {
+    "sonar.array.length",
+    "length of the sidescan's array, or its beam width (such as 0.5 m or 0.4 deg; empty for "
+    "synthetic aperture)",
+    ""};
 static const struct question unit = {"objects[0].mesh.unit",
                                      "unit of the mesh's numbers (m, cm or mm)", NULL};
 static const struct question nose = {
@@ -202,7 +202,7 @@ static bool ask_altitude(struct interview *interview)
         snprintf(recorded, sizeof recorded, "from_file: as recorded, %.4g m in the %s; ",
                  interview->recorded_altitude_m, has_returns ? "median" : "mean");
     snprintf(text, sizeof text, "altitude of the sonar over the seabed (%s%s%s%sor a number)",
-             has_returns ? "first_return: where it begins in each ping" : "",
+             has_returns ? "first_return: from the first return of each ping" : "",
              has_returns ? median : "", has_returns ? "; " : "", recorded);
     if (has_returns || interview->has_altitude) {
         question.text = text;

@@ -35,7 +35,7 @@ static void print_key(const json_t *key)
     size_t i;
     json_t *word;
     printf("%s%s\n    %s\n", text_of(key, "path"),
-           json_is_true(json_object_get(key, "is_required")) ? " (must be there)" : "",
+           json_is_true(json_object_get(key, "is_required")) ? " (required)" : "",
            text_of(key, "meaning"));
     for (i = 0; i < sizeof(facts) / sizeof(facts[0]); i++)
         if (*text_of(key, facts[i]))

@@ -19,8 +19,8 @@ static void print_help(FILE *file)
         fprintf(file, "  sonject %-10s %s\n", verbs[i]->name, verbs[i]->summary);
     fputs("\n"
           "  sonject help VERB   the verb's options\n"
-          "  sonject help KEY    what a key means: sonar.altitude, or altitude in any section; "
-          "sonar.: all of it\n"
+          "  sonject help KEY    what a key means: sonar.altitude, altitude in any section, or "
+          "sonar. for all its keys\n"
           "  sonject --version   the version\n"
           "\n"
           "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 device,\n"

@@ -32,31 +32,33 @@ struct measure_options {
 #define MEMBER(name) offsetof(struct measure_options, name)
 
 static const struct argument arguments[] = {
-    {"--targets", NULL, "MASK", "what is no seabed, such as a run's labels.png", ARGUMENT_TEXT,
-     false, MEMBER(labels)},
+    {"--targets", NULL, "MASK", "mask of what is not seabed, such as a run's labels.png",
+     ARGUMENT_TEXT, false, MEMBER(labels)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+    {"--channel", NULL, "port|starboard|N", "channel of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
-    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
-     MEMBER(array)},
-    {"--box", NULL, "ROW,COLUMN,ROWS,COLUMNS", "measures the contact there; may be repeated",
+    {"--array", NULL, "NAME", "array of an HDF5 or MATLAB file that has several", ARGUMENT_TEXT,
+     false, MEMBER(array)},
+    {"--box", NULL, "ROW,COLUMN,ROWS,COLUMNS", "measures the contact in this box; may be repeated",
      ARGUMENT_TEXTS, false, MEMBER(boxes)},
     {"--truth", NULL, "FILE", "measures the contacts of a run's truth.json", ARGUMENT_TEXT, false,
      MEMBER(truth)},
     {"--find", NULL, NULL, "looks for contacts and measures them, the brightest first",
      ARGUMENT_FLAG, false, MEMBER(finds)},
-    {"--find-contrast", NULL, "DB", "of the faintest over the seabed, 6...100, see below (12)",
+    {"--find-contrast", NULL, "DB", "least contrast over the seabed, 6...100, see below (12)",
      ARGUMENT_NUMBER, false, MEMBER(find_contrast)},
-    {"--find-most", NULL, "N", "contacts, 1...100000 (100)", ARGUMENT_WHOLE, false,
-     MEMBER(find_most)},
+    {"--find-most", NULL, "N", "largest number of contacts, 1...100000 (100)", ARGUMENT_WHOLE,
+     false, MEMBER(find_most)},
     {"--range-to-left", NULL, NULL,
-     "range grows to the left, as in the port half of an image of two sides; truth tells it",
+     "range grows to the left, as in the port half of an image of two sides; --truth knows it",
      ARGUMENT_FLAG, false, MEMBER(range_to_left)},
-    {"--row-spacing", NULL, "M", "of contacts' lengths in metres; else as truth or the file tells",
-     ARGUMENT_NUMBER, false, MEMBER(row_spacing)},
-    {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
-     MEMBER(column_spacing)},
+    {"--row-spacing", NULL, "M",
+     "distance between rows, for lengths in metres; by default from truth or file", ARGUMENT_NUMBER,
+     false, MEMBER(row_spacing)},
+    {"--column-spacing", NULL, "M",
+     "distance between columns, in slant range; by default from truth or file", ARGUMENT_NUMBER,
+     false, MEMBER(column_spacing)},
 };
 
 /* Prints a number; null for NaN and infinity, which JSON lacks. */
@@ -153,7 +155,7 @@ static int work_on_contacts(const struct measure_options *options, sonject_measu
     char *text = NULL;
     int code = EXIT_CODE_USAGE;
     if (!boxes) {
-        message("measure: memory is out");
+        message("measure: out of memory");
         code = EXIT_CODE_STORAGE;
     } else if (fill_contacts(options, params, boxes)) {
         sonject_status status = sonject_context_create(NULL, &context);
@@ -180,9 +182,9 @@ static const char *conflict(const struct measure_options *options)
     if (options->labels && wants_contacts(options))
         return "measure: --targets is for the seabed's statistics, not for contacts";
     if (options->finds && (options->truth || options->boxes.count > 0))
-        return "measure: --find looks for contacts that --box and --truth do not tell";
+        return "measure: --find cannot be used with --box or --truth";
     if ((options->find_contrast.is_given || options->find_most.is_given) && !options->finds)
-        return "measure: --find-contrast and --find-most are for --find; give it too";
+        return "measure: --find-contrast and --find-most need --find";
     if (options->find_contrast.is_given &&
         !(options->find_contrast.value >= 6.0 && options->find_contrast.value <= 100.0))
         return "measure: --find-contrast must be 6...100 dB";
@@ -226,15 +228,16 @@ const struct verb measure_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes =
-        "A contact that --find finds has a mean of 3 x 3 pixels that is so far over the seabed\n"
-        "around it, and touches no brighter one's box; \"left_off\" counts what more is as\n"
-        "bright. Lengths have standard errors by speckle. \"gap\" is what is lit between "
-        "highlight\n"
-        "and shadow, such as a thick target's top, \"dim\" the first part of the shadow if that "
-        "is\n"
-        "brighter than the rest; \"cut\" says that the box or the image ends "
-        "there.\n" TRANSFER_NOTES,
+    .notes = "--find finds contacts whose brightest mean of 3 x 3 pixels has at least "
+             "--find-contrast over\n"
+             "the seabed around, and that touch no brighter contact's box; \"left_off\" counts "
+             "those beyond\n"
+             "--find-most. Lengths have standard errors due to speckle. \"gap\" is the lit part "
+             "between\n"
+             "highlight and shadow, such as a thick target's top; \"dim\" is the first part of the "
+             "shadow, if\n"
+             "brighter than the rest; \"cut\" says that the box or the image ends "
+             "there.\n" TRANSFER_NOTES,
     .options_size = sizeof(struct measure_options),
     .work = work,
 };

@@ -61,7 +61,7 @@ static int work(const void *verb_options)
     if (!labels_parse("merge", options->labels, &labels))
         return EXIT_CODE_USAGE;
     if (options->labels && holds_campaign(options->stage.output)) {
-        message("merge: a campaign's labels are those that its file names: take --labels out");
+        message("merge: a campaign's file chooses its labels: take --labels out");
         return EXIT_CODE_USAGE;
     }
     return stage_work(&options->stage, merge, verb_options, "the result is in ");
@@ -75,9 +75,9 @@ const struct verb merge_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "Says which shards or images are missing. The files and the image of a run's scene must\n"
-        "be those that its shards traced; they are looked for where those found them. Of a\n"
-        "scene with bands, all that are below DIR are merged.",
+        "Says which shards or images are missing. The image and other files of a run's scene\n"
+        "must be unchanged, and in the places where its shards found them. Of a scene with bands,\n"
+        "all bands below DIR are merged.",
     .options_size = sizeof(struct merge_options),
     .work = work,
 };

@@ -24,10 +24,10 @@ static const struct argument arguments[] = {
     GEOMETRY_ARGUMENTS(struct quicklook_options, "horizontal axis; ground needs the altitude"),
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
-    {"--channel", NULL, "port|starboard|N", "of an XTF or JSF file", ARGUMENT_TEXT, false,
+    {"--channel", NULL, "port|starboard|N", "channel of an XTF or JSF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
-    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
-     MEMBER(array)},
+    {"--array", NULL, "NAME", "array of an HDF5 or MATLAB file that has several", ARGUMENT_TEXT,
+     false, MEMBER(array)},
 };
 
 static int work(const void *verb_options)

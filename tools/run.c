@@ -24,12 +24,12 @@ static const struct argument arguments[] = {
     SCENE_ARGUMENTS(struct run_options),
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
      offsetof(struct run_options, labels)},
-    {"--shard", NULL, "I/K", "traces part I of K, for sonject merge; 1/K to K/K are a run",
+    {"--shard", NULL, "I/K", "traces part I of K; sonject merge joins the parts 1/K to K/K",
      ARGUMENT_TEXT, false, offsetof(struct run_options, shard)},
-    {"--exit-after", NULL, "SECONDS", "stops tracing after so long, as after SIGTERM",
+    {"--exit-after", NULL, "SECONDS", "stops tracing after this time, as after SIGTERM",
      ARGUMENT_NUMBER, false, offsetof(struct run_options, exit_after)},
-    {"--checkpoint", NULL, "SECONDS", "keeps what was traced so often; 60 by itself",
-     ARGUMENT_NUMBER, false, offsetof(struct run_options, checkpoint)},
+    {"--checkpoint", NULL, "SECONDS", "time between checkpoints (60)", ARGUMENT_NUMBER, false,
+     offsetof(struct run_options, checkpoint)},
     {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
      offsetof(struct run_options, overwrites)},
     STAGE_ARGUMENTS(struct run_options),
@@ -101,7 +101,7 @@ static int work(const void *verb_options)
         !shard_parse("run", options->shard, &index, &count))
         return EXIT_CODE_USAGE;
     return stage_work(&options->stage, inject, verb_options,
-                      options->shard ? "the shard is done; once all are: sonject merge "
+                      options->shard ? "the shard is done; after all shards, run sonject merge "
                                      : "the result is in ");
 }
 
@@ -115,9 +115,9 @@ const struct verb run_verb = {
     .notes =
         "A folder that already holds the finished result of the same inputs is left as it is; one\n"
         "with another result is refused unless --overwrite is given.\n"
-        "Of a scene with bands each goes to a folder of its name; --set band=NAME takes one.\n"
-        "A run that was stopped goes on with what is in DIR/work. Shards of a run need the same\n"
-        "DIR and scene; they may run on different machines, at any time, and again.",
+        "Each band of a scene goes to a folder of its name; --set band=NAME runs only that band.\n"
+        "A run that was stopped continues from DIR/work. Shards of a run need the same DIR and\n"
+        "scene; they may run on different machines, at any time, and be repeated.",
     .options_size = sizeof(struct run_options),
     .work = work,
 };

@@ -9,9 +9,9 @@
 
 /* The numbers: ROW(member, option, unit, help, key of a scene whose input is the seabed). */
 #define NUMBERS(ROW)                                                                               \
-    ROW(row_spacing, "--row-spacing", "M", "along-track distance of rows",                         \
+    ROW(row_spacing, "--row-spacing", "M", "distance between rows, along the track",               \
         "input.geometry.row_spacing")                                                              \
-    ROW(column_spacing, "--column-spacing", "M", "slant range distance of columns",                \
+    ROW(column_spacing, "--column-spacing", "M", "distance between columns, in slant range",       \
         "input.geometry.column_spacing")                                                           \
     ROW(first_range, "--first-range", "M", "slant range of the first column",                      \
         "input.geometry.first_slant_range")                                                        \
@@ -21,8 +21,8 @@
         "sonar.bandwidth")                                                                         \
     ROW(texture_length, "--texture-length", "M",                                                   \
         "correlation length of the K distribution's texture", "input.synthetic.texture_length")    \
-    ROW(ripple_wavelength, "--ripple-wavelength", "M", "distance of sand ripples",                 \
-        "input.synthetic.ripple_wavelength")                                                       \
+    ROW(ripple_wavelength, "--ripple-wavelength", "M",                                             \
+        "wavelength of sand ripples, from crest to crest", "input.synthetic.ripple_wavelength")    \
     ROW(ripple_contrast, "--ripple-contrast", "0...1",                                             \
         "depth of the ripples' modulation, 0: no ripples", "input.synthetic.ripple_contrast")      \
     ROW(ripple_heading, "--ripple-heading", "DEG",                                                 \
@@ -101,7 +101,7 @@ static bool is_side(const char *name, const struct whole_argument *number)
 {
     if (!number->is_given || (number->value > 0 && number->value <= UINT32_MAX))
         return true;
-    message("seabed: ", name, " lies outside 1...2^20");
+    message("seabed: ", name, " must be 1...2^20");
     return false;
 }
 

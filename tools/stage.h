@@ -17,7 +17,7 @@ struct stage_options {
     bool is_quiet;
 };
 
-#define OVERWRITE_HELP "replaces a result of other inputs, which else is refused"
+#define OVERWRITE_HELP "allows replacing a result of other inputs"
 
 /* Rows of a verb's arguments; the structure of its options has a struct stage_options `stage`. */
 #define STAGE_ARGUMENTS(structure)                                                                 \
@@ -31,12 +31,12 @@ struct stage_options {
         {"--verbose",                                                                              \
          NULL,                                                                                     \
          NULL,                                                                                     \
-         "also tells the device, what was built for it, the noise floor, ...",                     \
+         "also prints the device, compiled kernels, the noise floor and more",                     \
          ARGUMENT_FLAG,                                                                            \
          false,                                                                                    \
          offsetof(structure, stage.is_verbose)},                                                   \
     {                                                                                              \
-        "--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG,      \
+        "--quiet", NULL, NULL, "prints errors only: no progress bar, no notes", ARGUMENT_FLAG,     \
             false, offsetof(structure, stage.is_quiet)                                             \
     }
 

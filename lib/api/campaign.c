@@ -155,9 +155,10 @@ static sonject_status check_run_params(const struct sonject_campaign *campaign,
                               "shard_index must be from 1 to shard_count, %u",
                               (unsigned)params->shard_count);
     if (params->overwrites && params->shard_count > 1)
-        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
-                              "shards overwrite no other campaign, since they would remove each "
-                              "other's images: make image 0 alone so first (--only 0 --overwrite)");
+        return report_failure(
+            campaign->report, SONJECT_ERROR_ARGUMENT,
+            "shards cannot overwrite another campaign, since they would remove each other's "
+            "images: first make image 0 alone (--only 0 --overwrite)");
     if (!(params->exit_after_s >= 0.0) || !isfinite(params->exit_after_s))
         return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
                               "times are seconds, not below 0");

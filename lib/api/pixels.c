@@ -72,7 +72,7 @@ sonject_status take_stored(struct report *report, const sonject_pixels *pixels, 
     CHECK(pack_pixels(report, pixels, &taken, swath));
     if (taken.transfer)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "the transfer function is what is sought: take transfer out");
+                              "calibrate finds the transfer function itself: take transfer out");
     return SONJECT_OK;
 }
 

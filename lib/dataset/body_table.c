@@ -41,7 +41,7 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
         unit = strchr(unit + 1, '[');
     const size_t length = strlen(name);
     if (unit && name[length - 1] != ']')
-        return tree_failure(&reader->file, place, name, "ends its unit with no ]");
+        return tree_failure(&reader->file, place, name, "has a unit without a closing ]");
     if (unit) {
         name[length - 1] = 0;
         *unit = 0;
@@ -49,7 +49,7 @@ static sonject_status read_name(struct body_reader *reader, const struct table_r
     }
     if (reader->weight && strcmp(name, reader->weight) == 0) {
         reader->weight_place = field;
-        return unit ? tree_failure(&reader->file, place, name, "is a weight, without a unit")
+        return unit ? tree_failure(&reader->file, place, name, "is a weight, which has no unit")
                     : SONJECT_OK;
     }
     CHECK(campaign_check_key(&reader->file, place, name, name, true));
@@ -76,7 +76,7 @@ static sonject_status read_names(struct body_reader *reader, const struct table_
     const struct tree_place place = {NULL, row->line, 1};
     if (status == SONJECT_OK && reader->weight && reader->weight_place == row->count)
         return tree_failure(&reader->file, place, reader->weight,
-                            "is to be the weights' column, but no column has this name");
+                            "must be the column of weights, but no column has this name");
     return status;
 }
 
@@ -104,7 +104,7 @@ static sonject_status read_body(struct body_reader *reader, const struct table_r
         const struct tree_place place = {NULL, row->line, column_of(row, reader->weight_place)};
         if (!text_to_number(field, &weight, &rest) || *rest || !(weight >= 0.0 && weight <= 1e9))
             return tree_failure(&reader->file, place, reader->weight,
-                                "'%s' is no number from 0 to 1e9",
+                                "'%s' is not a number from 0 to 1e9",
                                 text_excerpt(excerpt, sizeof excerpt, field));
     }
     CHECK(grow_list(reader->report, &distribution->texts, number, sizeof *distribution->texts));

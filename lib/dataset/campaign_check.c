@@ -175,8 +175,8 @@ static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *
     *trials += steps;
     if (*trials > TRIALS_MAX)
         return report_failure(campaign->report, SONJECT_ERROR_INPUT,
-                              "%s: draws from so many choices that more than %d scenes were to be "
-                              "checked; make several campaigns of it",
+                              "%s: has so many combinations of choices that more than %d scenes "
+                              "would have to be checked; split it into several campaigns",
                               campaign->campaign.path, TRIALS_MAX);
     for (uint32_t step = 0; step < steps; step++)
         CHECK(try_step(campaign, hash, category, number, step, &is_made));

@@ -47,16 +47,18 @@ sonject_status campaign_check_key(const struct tree *tree, struct tree_place pla
         of_objects = strchr(key, '.') + 1;
     if (!is_object && !is_taken(of_objects, true) &&
         scene_key_find(&object_section, of_objects, &unused, &other))
-        return tree_failure(tree, place, path,
-                            "is of objects: write objects[].%s in draw, or %s in targets[].draw",
-                            of_objects, of_objects);
+        return tree_failure(
+            tree, place, path,
+            "is a key of objects: write objects[].%s in draw, or %s in targets[].draw", of_objects,
+            of_objects);
     if (is_taken(key, is_object))
         return tree_failure(tree, place, path, "the campaign itself sets %s; remove it", key);
     if (scene_key_find(is_object ? &object_section : &scene_section, key, &near, &section))
         return SONJECT_OK;
     if (is_object && scene_key_find(&scene_section, key, &unused, &other))
-        return tree_failure(tree, place, path,
-                            "is of scenes: write it in the scene's file or the campaign's draw");
+        return tree_failure(
+            tree, place, path,
+            "is a key of scenes: write it in the scene's file or the campaign's draw");
     for (size_t i = 0; i < section->count; i++)
         if (!section->fields[i].is_hidden)
             list_word(&list, section->fields[i].key);
@@ -89,8 +91,9 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
     sonject_status status = is_table ? body_table_read(reader, &entry->value, distribution)
                                      : distribution_read(reader, &entry->value, key, distribution);
     if (status == SONJECT_OK && distribution->of && !draws_have_key(&others, distribution->of))
-        status = refuse_value(reader, &entry->value,
-                              "is a ratio of '%s', which is not drawn before it", distribution->of);
+        status =
+            refuse_value(reader, &entry->value, "is a ratio of '%s', which must be drawn before it",
+                         distribution->of);
     for (size_t i = 0; is_table && status == SONJECT_OK && i < distribution->table->key_count; i++)
         if (draws_have_key(&others, distribution->table->keys[i]))
             status = refuse_value(reader, &entry->value, "draws %s, which is drawn already",
@@ -231,8 +234,8 @@ sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node
     if (ratio->least >= 1.0 && ratio->least < ratio->most && ratio->most <= RATIO_MAX)
         return SONJECT_OK;
     return refuse_value(reader, node,
-                        "must rise within 1...%d, where 1 is straight below the sonar, not from %g "
-                        "to %g",
+                        "must be two rising numbers within 1...%d, where 1 is straight below the "
+                        "sonar, not %g and %g",
                         RATIO_MAX, ratio->least, ratio->most);
 }
 
@@ -252,8 +255,9 @@ static sonject_status read_grey(struct reader *reader, const struct tree_node *n
         CHECK(read_quantity(reader, &node->entries[i].value, QUANTITY_DECIBEL, &ends[i]));
     if (ends[0] < ends[1])
         return SONJECT_OK;
-    return refuse_value(reader, node, "black must be below white, not at %g dB and that at %g dB",
-                        ends[0], ends[1]);
+    return refuse_value(reader, node,
+                        "black must be below white, but black is %g dB and white %g dB", ends[0],
+                        ends[1]);
 }
 
 static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)
@@ -411,9 +415,11 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
     const double without_target = campaign->empty + campaign->clutter_alone;
     check_items(reader, node, "targets", campaign->targets, campaign->target_count);
     if (campaign->format == FORMAT_AS_INPUT && !isnan(campaign->grey_db[0]))
-        refuse_relation(reader, node, "grey", "format", "and format: as_input exclude each other");
+        refuse_relation(reader, node, "grey", "format",
+                        "cannot be combined with format: as_input; remove one of the two");
     if (without_target > 1.0)
-        refuse_relation(reader, node, "empty", "clutter", "and clutter.alone together are above 1");
+        refuse_relation(reader, node, "empty", "clutter",
+                        "together with clutter.alone must be at most 1; lower one of the two");
     if (campaign->target_count == 0 && without_target < 1.0)
         refuse_relation(reader, node, "targets", "empty clutter",
                         "is missing; add it, or make empty and clutter.alone add up to 1");

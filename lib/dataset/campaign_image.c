@@ -192,11 +192,12 @@ static sonject_status check_calibrated(const struct sonject_campaign *campaign,
         return SONJECT_OK;
     return scene_locate(
         &image->scene, campaign->report,
-        report_failure(campaign->report, SONJECT_ERROR_INPUT,
-                       "auto is for campaigns with a folder: make one image "
-                       "by sonject campaign --only %llu -o FOLDER, and name "
-                       "FOLDER/" CALIBRATIONS_FOLDER "/%u.yaml, which it leaves, instead of auto",
-                       (unsigned long long)image->plan.id, (unsigned)image->plan.swath),
+        report_failure(
+            campaign->report, SONJECT_ERROR_INPUT,
+            "auto works only in campaigns with a folder: make one image with sonject campaign "
+            "--only %llu -o FOLDER, and name the file FOLDER/" CALIBRATIONS_FOLDER
+            "/%u.yaml that it writes, instead of auto",
+            (unsigned long long)image->plan.id, (unsigned)image->plan.swath),
         "input.calibration");
 }
 
@@ -315,9 +316,9 @@ sonject_status campaign_image_round(struct report *report, struct campaign_image
         transfer_to_amplitude(&swath->transfer, swath->layout.type, stored,
                               result->rows * result->columns, result->image, &bad, &at_full_scale);
     free(stored);
-    return status == SONJECT_OK ? SONJECT_OK
-                                : report_failure(report, status,
-                                                 "what the file would store at pixel %zu is no "
-                                                 "amplitude",
-                                                 bad);
+    return status == SONJECT_OK
+               ? SONJECT_OK
+               : report_failure(
+                     report, status,
+                     "the number that the file would store at pixel %zu is not an amplitude", bad);
 }

@@ -310,7 +310,7 @@ static sonject_status find_box(const struct campaign *campaign, const struct swa
             box->pixels.first_column < plan->layout.columns)
             return SONJECT_OK;
         return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "avoid: %s of %llu x %llu pixels has none at row %llu, column %llu",
+                            "avoid: %s has %llu x %llu pixels, but none at row %llu, column %llu",
                             plan->written, (unsigned long long)plan->layout.rows,
                             (unsigned long long)plan->layout.columns,
                             (unsigned long long)box->pixels.first_row,
@@ -321,10 +321,10 @@ static sonject_status find_box(const struct campaign *campaign, const struct swa
         pixels_of(geometry_column(geometry, range_m[0]), geometry_column(geometry, range_m[1]),
                   plan->layout.columns, &box->pixels.first_column, &box->pixels.columns))
         return SONJECT_OK;
-    return tree_failure(&campaign->tree, plan->place, "swaths",
-                        "avoid: %s shows nothing at %g to %g m along the track and slant ranges of "
-                        "%g to %g m",
-                        plan->written, along_m[0], along_m[1], range_m[0], range_m[1]);
+    return tree_failure(
+        &campaign->tree, plan->place, "swaths",
+        "avoid: %s does not reach %g to %g m along the track and slant ranges of %g to %g m",
+        plan->written, along_m[0], along_m[1], range_m[0], range_m[1]);
 }
 
 /* Returns the first pixels that a box to avoid forbids to chips. */
@@ -408,7 +408,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     uint64_t top = 0, height = plan->layout.rows, first, width;
     if (!geometry_side(geometry, plan->layout.columns, &first, &width))
         return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "nadir_column %g leaves none of the %llu columns of %s to the side",
+                            "nadir_column %g leaves none of the %llu columns of %s to its side: "
+                            "correct it, or the side",
                             geometry->nadir_column, (unsigned long long)plan->layout.columns,
                             plan->written);
     /* chips of a JPEG begin where a block does, so that blocks coded once are coded alike again */
@@ -448,8 +449,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     CHECK_MEMORY(report, room->boxes, "the places for images");
     if (images_show_contacts(campaign) && plan->avoid_count > 0 && campaign->clearance == 0)
         report_note(report,
-                    "chip.clearance is 0: objects may reach into contacts to avoid in %s, from "
-                    "which their middles alone keep away",
+                    "chip.clearance is 0: in %s only the middles of objects keep away from "
+                    "contacts to avoid, so objects may overlap these",
                     plan->written);
     if (campaign->chip_columns > 0)
         limit_chips(&limits, plan);

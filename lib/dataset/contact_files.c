@@ -110,7 +110,7 @@ sonject_status contact_reader_find_image(struct contact_reader *reader, const ch
         return SONJECT_OK;
     if (*name == 0 || !text_is_printable(name))
         return input_failure(reader->report, place,
-                             *name ? "the image's name is no text" : "no image is named");
+                             *name ? "the image's name must be a text" : "no image is named");
     char *path = find_file(reader, name, &has_memory);
     if (!path && has_memory)
         return input_failure(reader->report, place,
@@ -367,8 +367,8 @@ static sonject_status read_labels(struct contact_reader *reader, const char *pat
     if (reader->set->count == 0)
         return input_failure(reader->report, path, "holds no contacts");
     if (reader->choice->class_count == 0 && class_count > 1)
-        report_note(reader->report, "contacts of %zu classes are taken as one: %s", class_count,
-                    classes);
+        report_note(reader->report, "contacts of %zu classes are treated as one class: %s",
+                    class_count, classes);
     pair_all(reader->set);
     return SONJECT_OK;
 }

@@ -345,9 +345,9 @@ static sonject_status finish_quantiles(struct reader *reader, const struct tree_
         key_path_shorten(&reader->path, before);
     }
     if (status == SONJECT_OK && told == 0 && node->count <= 2) /* else one key is unknown */
-        return refuse_value(reader, node,
-                            "tells no extents: add highlight_along, highlight_range, shadow_along "
-                            "or shadow_range");
+        return refuse_value(
+            reader, node,
+            "has no extents: add highlight_along, highlight_range, shadow_along or shadow_range");
     return status;
 }
 

@@ -162,8 +162,8 @@ static sonject_status take_line(struct yolo *yolo, const char *place, const char
     if (count < COUNT(numbers) || *rest || !(numbers[0] >= 0.0 && numbers[0] <= 1e9) ||
         numbers[0] != floor(numbers[0]))
         return input_failure(reader->report, place,
-                             "'%s' is not a class's number and four fractions, of the box's centre "
-                             "and sides, x before y",
+                             "'%s' is not a class's number and four fractions: the box's centre x "
+                             "and y, its width and height",
                              text_excerpt(excerpt, sizeof excerpt, line));
     snprintf(class_number, sizeof class_number, "%.0f", numbers[0]);
     const json_t *name = json_object_get(yolo->names, class_number);

@@ -51,8 +51,8 @@ sonject_status write_yolo_card(const struct data_set *set)
     if (val == count) {
         val = test < count ? test : train;
         report_log(set->report,
-                   "data.yaml names %s/images for validation, too, since no split is left for it; "
-                   "for one that trainers do not see otherwise, add val to the campaign's splits",
+                   "data.yaml uses %s/images also for validation, since no split is left for it; "
+                   "for validation on images of its own, add val to the campaign's splits",
                    set->split_names[val]);
     }
     CHECK(path_in(set->report, path, set->folder, "data.yaml"));

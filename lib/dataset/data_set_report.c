@@ -333,8 +333,8 @@ sonject_status write_report_page(const struct data_set *set)
             status = add_image(page, i, set->split_first[i] + k);
     if ((double)page->cut > CUT_MANY * (double)set->images)
         report_note(set->report,
-                    "%llu of %llu images have an object whose highlight or shadow the image's edge "
-                    "cuts; a lower chip.spread or larger images have fewer",
+                    "%llu of %llu images have an object whose highlight or shadow is cut by the "
+                    "image's edge; for fewer, lower chip.spread or make the images larger",
                     (unsigned long long)page->cut, (unsigned long long)set->images);
     THEN(status, write_contact_sheet(set, page->cell_height, &page->sheet));
     THEN(status, write_chips(page));

@@ -196,11 +196,11 @@ static sonject_status read_number(struct reader *reader, const struct tree_node 
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (!text_to_number(text, number, &rest) || !isfinite(*number))
-        return refuse_value(reader, node, "'%s' is not a finite number, which a unit may follow",
+        return refuse_value(reader, node, "'%s' is not a finite number, with or without a unit",
                             text_excerpt(excerpt, sizeof excerpt, text));
     rest += strspn(rest, " \t");
     if (strlen(rest) + 2 > sizeof unit)
-        return refuse_value(reader, node, "'%s' is no unit",
+        return refuse_value(reader, node, "'%s' is not a unit",
                             text_excerpt(excerpt, sizeof excerpt, rest));
     if (*rest)
         snprintf(unit, sizeof unit, " %s", rest);
@@ -357,7 +357,7 @@ static sonject_status read_of(struct reader *reader, const struct tree_node *nod
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (*distribution->unit)
-        return refuse_value(reader, node, "makes ratios of the numbers, which have no unit then");
+        return refuse_value(reader, node, "makes the numbers ratios, which must have no unit");
     distribution->of = copy_text(text);
     CHECK_MEMORY(reader->report, distribution->of, "the campaign");
     return SONJECT_OK;

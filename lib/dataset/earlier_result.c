@@ -60,7 +60,7 @@ sonject_status inputs_check(struct report *report, const char *folder, const jso
     const char *name;
     json_t *value;
     if (!json_is_object(there))
-        add_difference(&differences, "inputs that it does not tell", NULL, NULL);
+        add_difference(&differences, "inputs that it does not record", NULL, NULL);
     json_object_foreach((json_t *)here, name, value)
     {
         if (there && !json_equal(json_object_get(there, name), value))
@@ -137,12 +137,12 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
          file_list_check(json_object_get(document, "files"), report, folder, true, &changed));
     if (status == SONJECT_OK && lacks_labels)
         status = input_failure(report, folder,
-                               "is merged already, without those labels: run its scene into it "
-                               "once more with them");
+                               "is already merged, without those labels: run its scene into this "
+                               "folder again, with them");
     else if (status == SONJECT_OK && changed)
         status = input_failure(report, folder,
-                               "is merged already, but %s is not as it was written: run its scene "
-                               "into it once more",
+                               "is already merged, but %s is not as it was written: run its scene "
+                               "into this folder again",
                                changed);
     json_decref(document);
     return status;

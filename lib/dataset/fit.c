@@ -76,9 +76,10 @@ static void leave_out_shadows(struct fit *fit)
                 !(fit->real[i].shadow_visibility_db > SHADOW_SEEN_DB);
     if (seen >= SEEN_LEAST && 3 * seen >= fit->real_count)
         return;
-    snprintf(note, sizeof note,
-             "shadows are seen in %zu of %zu contacts, so heights and the noise floor stay", seen,
-             fit->real_count);
+    snprintf(
+        note, sizeof note,
+        "only %zu of %zu contacts show a shadow, so heights and the noise floor stay as they are",
+        seen, fit->real_count);
     report_note(fit->report, "%s", note);
     growing_text_add(&fit->notes, "%s\n", note);
     fit->draws.contacts_lack_shadows = true;
@@ -226,8 +227,8 @@ static sonject_status open_first(struct fit *fit, struct sonject_campaign **open
     fit->selection.chip = (struct ratio_limits){0.0, 0.0};
     free(fit->selection.swaths);
     fit->selection.swaths = NULL;
-    growing_text_add(&fit->notes, "the campaign's swaths do not reach the ranges over altitude of "
-                                  "the contacts; its chips lie where they lay\n");
+    growing_text_add(&fit->notes, "the campaign's swaths do not reach the contacts' ratios of "
+                                  "range to altitude, so images stay in the same places\n");
     return open_round(fit, 0, opened);
 }
 
@@ -474,10 +475,10 @@ static sonject_status check_fitted(const struct fit *fit, const char *fitted)
     const bool is_same = paths_are_same(folder, fit->campaign->campaign.folder);
     free(folder);
     if (!is_same)
-        return input_failure(fit->report, fitted,
-                             "must lie in the folder of %s, from which the names of its files are "
-                             "meant",
-                             fit->source.path);
+        return input_failure(
+            fit->report, fitted,
+            "must lie in the folder of %s, because its file names are relative to that folder",
+            fit->source.path);
     if (paths_are_same(fitted, fit->source.path))
         return input_failure(fit->report, fitted,
                              "is the campaign that is fitted; choose another name");

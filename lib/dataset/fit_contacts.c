@@ -168,11 +168,10 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
     if (status == SONJECT_OK && swath_file_attribute(file, GREY_ATTRIBUTE, ends, sizeof ends) &&
         scene.transfer.kind != SONJECT_TRANSFER_DECIBEL)
-        status =
-            input_failure(campaign->report, image,
-                          "has grey levels of %s, not the swath's numbers: label the swath, or "
-                          "images made without grey",
-                          ends);
+        status = input_failure(campaign->report, image,
+                               "was made with grey: [%s] and lacks the swath's numbers: label the "
+                               "swath, or images made without grey",
+                               ends);
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
         sonject_geometry_params told = scene.geometry;
@@ -205,7 +204,7 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
         label->columns > layout.columns - label->first_column)
         return input_failure(campaign->report, image,
                              "has %llu x %llu pixels, and a label's box at row %llu, column %llu "
-                             "is not inside",
+                             "is not inside: correct the label",
                              (unsigned long long)layout.rows, (unsigned long long)layout.columns,
                              (unsigned long long)label->first_row,
                              (unsigned long long)label->first_column);
@@ -220,8 +219,8 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     if (side == 0 && swath_of_image(&campaign->campaign, image, RECORDED_PORT) !=
                          swath_of_image(&campaign->campaign, image, RECORDED_STARBOARD))
         return input_failure(campaign->report, image,
-                             "has two sides that are swaths of the campaign: name its contacts in "
-                             "a table (.csv) with a column side, port or starboard");
+                             "shows two sides, which are two swaths of the campaign: list its "
+                             "contacts in a .csv table with a column side, port or starboard");
     CHECK(read_image_scene(campaign, image, plan, contact->side, &window, tells_geometry,
                            tells_altitude, &scene));
     if (side != 0)

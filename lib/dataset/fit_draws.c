@@ -48,7 +48,8 @@ static sonject_status add_number(struct fit_draws *draws, struct report *report,
 {
     if (node->place.override)
         return tree_failure(&draws->campaign->tree, node->place, like->key,
-                            "is moved in the campaign's file; write it there");
+                            "is changed by the fit: write it into the campaign's file instead of "
+                            "giving it by --set");
     CHECK(grow_list(report, &draws->numbers, draws->count, sizeof *draws->numbers));
     struct fitted_number *number = &draws->numbers[draws->count++];
     *number = *like;
@@ -174,10 +175,11 @@ static void note_fixed(struct fit_draws *draws, const struct item *item, size_t 
     const uint32_t fixed = ALL_SIZES & observed_kinds(draws) & ~moved;
     if (!fixed)
         return;
-    growing_text_add(
-        &draws->fixed, "%s%s",
-        draws->fixed.characters ? ", " : "sizes that are fixed, or of a table, are not fitted: ",
-        item->class_name);
+    growing_text_add(&draws->fixed, "%s%s",
+                     draws->fixed.characters
+                         ? ", "
+                         : "sizes that are fixed or come from a table are not fitted: ",
+                     item->class_name);
     for (uint32_t k = 0; k < COUNT(names); k++)
         if (fixed & BIT(k)) {
             growing_text_add(&draws->fixed, "%s%s", before, names[k]);
@@ -335,9 +337,10 @@ static sonject_status replace_scalar(struct splice_list *list, struct report *re
                                      const char *value)
 {
     if (node->place.override)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "--set %s gives what a fit writes: write it into the campaign's file",
-                              node->place.override);
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "--set %s gives a key that the fit changes: write it into the campaign's file",
+            node->place.override);
     const size_t offset = offset_of(text, node->place);
     return add_splice(list, report, offset, scalar_length(text + offset, node), value);
 }
@@ -352,10 +355,10 @@ static sonject_status insert_key(struct splice_list *list, struct report *report
     const struct tree_node *root = &draws->campaign->tree.root;
     const struct tree_entry *first = &section->entries[0];
     if (section->place.override || first->place.override)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "--set %s gives what a fit writes: write it into the campaign's file",
-                              first->place.override ? first->place.override
-                                                    : section->place.override);
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "--set %s gives a key that the fit changes: write it into the campaign's file",
+            first->place.override ? first->place.override : section->place.override);
     const size_t offset = offset_of(text, first->place);
     char line[160];
     const bool is_flow = text[offset_of(text, section->place)] == '{';

@@ -234,8 +234,8 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
     json_t *unmatched = unmatched_document(fit, values);
     if (json_object_size(unmatched) > 0)
         report_note(fit->report,
-                    "%zu of the contacts' measures are not matched by injected ones: see %s, Not "
-                    "matched%s%s",
+                    "%zu measures of injected contacts do not match those of real ones: see %s, "
+                    "Not matched%s%s",
                     json_object_size(unmatched), path, fixed ? "; " : "", fixed ? fixed : "");
     json_t *page = JSON_OBJECT(
         {"sonject", json_string(sonject_version())},

@@ -180,10 +180,10 @@ static const char *value_of_ratio(struct drawing *drawing, const char *prefix,
         i--;
     if (drawing->status == SONJECT_OK &&
         (i == 0 || !text_to_number(plan->keys[i - 1].text + length, &number, &rest)))
-        drawing->status = report_failure(drawing->report, SONJECT_ERROR_INPUT,
-                                         "%s%s is a ratio of %s, of which no number is drawn "
-                                         "before it",
-                                         prefix, distribution->key, distribution->of);
+        drawing->status =
+            report_failure(drawing->report, SONJECT_ERROR_INPUT,
+                           "%s%s is a ratio of %s, for which no number is drawn before it", prefix,
+                           distribution->key, distribution->of);
     text_to_number(ratio, &share, &ratio);
     text_of_number(digits, sizeof digits, share * number, 9);
     snprintf(text, DISTRIBUTION_TEXT_CAPACITY, "%s%.15s", digits, rest);
@@ -367,7 +367,7 @@ static void place_object(struct drawing *drawing)
     if (tries == PLACES_MAX && drawing->status == SONJECT_OK)
         drawing->status = report_failure(
             drawing->report, SONJECT_ERROR_INPUT,
-            "%s: the contacts to avoid leave no place for an object; lessen chip.clearance",
+            "%s: the contacts to avoid leave no place for an object; lower chip.clearance",
             drawing->campaign->swaths[drawing->plan->swath].written);
     drawing->objects++;
 }
@@ -579,7 +579,7 @@ sonject_status image_plan_check_grid(const struct campaign *campaign)
         cells = count_cells(&item->draws, NULL, cells);
         if (item->weight > 0.0 && cells > images)
             return tree_failure(&campaign->tree, item->place, "targets",
-                                "%s comes in %llu images, but the grid of its values has %s%llu "
+                                "%s appears in %llu images, but the grid of its values has %s%llu "
                                 "cells; ask for more images or fewer steps",
                                 item->class_name, (unsigned long long)images,
                                 cells == UINT64_MAX ? "more than " : "", (unsigned long long)cells);

@@ -59,9 +59,9 @@ static sonject_status merge_kept(struct report *report, struct device_slot *slot
         if (was_finished)
             *was_finished = status == SONJECT_OK;
     } else if (status == SONJECT_OK) {
-        status = input_failure(report, work,
-                               "holds no shards of a run, and there is no campaign: run them with "
-                               "--shard I/K first");
+        status = input_failure(
+            report, work,
+            "holds no shards of a run and no campaign: run the shards with --shard I/K first");
     }
     scene_clear(&scene);
     free(work);
@@ -100,10 +100,10 @@ static sonject_status check_bands(struct report *report, const char *folder, con
         if (band && is_band_name(band))
             THEN(status, find_band(report, folder, band, path, &is_there));
         if (!is_there)
-            THEN(status, input_failure(report, folder,
-                                       "holds no shards of band %s: run them with --shard I/K "
-                                       "first",
-                                       band));
+            THEN(status,
+                 input_failure(report, folder,
+                               "holds no shards of band %s: run its shards with --shard I/K first",
+                               band));
     }
     json_decref(document);
     return status;

@@ -22,8 +22,8 @@ static void tell_accuracy(struct report *report, const sonject_statistics *stati
 {
     if (!isnan(statistics->energy_error))
         report_log(report,
-                   "accuracy: energies of changed pixels are known to %.2g %%, by %.3g times the "
-                   "usual number of rays",
+                   "accuracy: energies of changed pixels have errors of %.2g %%, with %.3g times "
+                   "the usual number of rays",
                    100.0 * statistics->energy_error, statistics->ray_scale);
 }
 
@@ -37,8 +37,8 @@ static void tell_noise_floor(struct report *report, const struct scene *scene,
                  .estimate_noise) /* a call in memory may be one of many, so it only logs */
         (scene->input_path ? report_note : report_log)(
             report,
-            "no shadow of the patch tells the noise floor, and %.1f dB under the mean seabed is "
-            "taken: compare its shadows, and set injection.noise_floor",
+            "no shadow in the patch shows the noise floor, so %.1f dB under the mean seabed is "
+            "assumed: compare injected shadows with real ones, and set injection.noise_floor",
             -statistics->noise_floor_db);
 }
 
@@ -46,7 +46,7 @@ static void tell_clipped(struct report *report, const sonject_statistics *statis
 {
     if (statistics->input_clipped > 0)
         report_log(report,
-                   "of the patch's pixels %llu are at the image's full scale: their true amplitude "
+                   "%llu pixels of the patch are at the image's full scale: their true amplitude "
                    "may be larger",
                    (unsigned long long)statistics->input_clipped);
     if (statistics->output_clipped > 0)
@@ -58,7 +58,7 @@ static void tell_empty(struct report *report, const struct swath *swath)
 {
     char text[PING_LIST_CAPACITY];
     if (swath->skipped.count > 0)
-        report_note(report, "pings without samples make no row: %s",
+        report_note(report, "pings without samples give no row: %s",
                     ping_list_text(&swath->skipped, text));
     if (swath->empty.count > 0)
         report_note(report, "empty rows stay as they are: %s", ping_list_text(&swath->empty, text));
@@ -69,21 +69,20 @@ static void tell_sediment(struct report *report, const struct scene *scene)
 {
     const double frequency_khz = 1e-3 * scene->sonar.centre_frequency_hz;
     if (!isnan(scene->seabed.grain_size_phi) && !(frequency_khz >= 10.0 && frequency_khz <= 100.0))
-        report_note(report,
-                    "seabed.sediment: its model holds from 10 to 100 kHz, and tells little of "
-                    "%g kHz",
-                    frequency_khz);
+        report_note(
+            report,
+            "seabed.sediment: its model is valid from 10 to 100 kHz, and says little about %g kHz",
+            frequency_khz);
 }
 
 static void tell_altitudes(struct report *report, const struct scene *scene)
 {
     if (scene->altitudes_m[1] > 0.0)
-        report_note(
-            report,
-            "the altitude goes from %.2f to %.2f m over the objects' pings, and the "
-            "mean of %.2f m is taken, so that shadows are too short or too long; choose the "
-            "rows about one object by patch",
-            scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
+        report_note(report,
+                    "the altitude varies from %.2f to %.2f m over the objects' pings; the mean, "
+                    "%.2f m, is used, so some shadows are too short or too long: limit patch to "
+                    "the rows around one object",
+                    scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
 }
 
 void tell_scene(struct report *report, const struct scene *scene)
@@ -106,8 +105,8 @@ static void tell_seen(struct report *report, const struct scene *scene,
         else if (!(isnan(highlight_db) && isnan(shadow_db)) && !(highlight_db > 0.0) &&
                  !(shadow_db < 0.0))
             report_note(report,
-                        "'%s' drowns in the seabed: neither its highlight nor its shadow "
-                        "stands out; see objects[].level and seabed.lambert",
+                        "'%s' cannot be seen: neither its highlight nor its shadow stands out from "
+                        "the seabed; raise objects[].level, or check seabed.lambert",
                         scene->objects[i].name);
         else if (highlight_db < 0.0)
             report_note(report,
@@ -200,7 +199,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
         note_result(report, facts);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
-        report_note(report, "%s is written anew: of the input's metadata it keeps the description",
+        report_note(report,
+                    "%s is a new file: of the input's metadata it keeps only the description",
                     facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, calibration_files_list(report, facts->scene, folder, &facts->files));
@@ -411,7 +411,7 @@ static sonject_status check_sums(struct report *report, const struct sums_file *
     if (head->shards == 1 && head->first == 0 && head->is_last)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: a part of what was traced: sonject merge forms all parts",
+                          "%s: holds only a part of a traced scene: sonject merge forms all parts",
                           sums->path);
 }
 

@@ -156,7 +156,7 @@ void tell_calibration(struct report *report, const struct scene *scene)
         }
     }
     keys[length] = '\0';
-    report_log(report, "calibration %s tells %s", scene->calibration, *keys ? keys : "nothing");
+    report_log(report, "calibration %s gives %s", scene->calibration, *keys ? keys : "nothing");
 }
 
 void tell_calibration_doubts(struct report *report, const struct scene *scene)
@@ -170,13 +170,12 @@ void tell_calibration_doubts(struct report *report, const struct scene *scene)
                     scene->calibration, scene->calibrated_side, side, side);
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE &&
         scene->altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0)
-        report_note(report,
-                    "the recorded altitude, %.2f m here, is %.0f %% %s the first return as %s "
-                    "has it, and shadows get too %s: if the first return is right, write "
-                    "sonar.altitude: first_return",
-                    scene->sonar.altitude_m, 100.0 * fabs(share - 1.0),
-                    share < 1.0 ? "below" : "above", scene->calibration,
-                    share < 1.0 ? "long" : "short");
+        report_note(
+            report,
+            "the recorded altitude, %.2f m here, is %.0f %% %s the first return in %s, so shadows "
+            "become too %s: if the first return is right, write sonar.altitude: first_return",
+            scene->sonar.altitude_m, 100.0 * fabs(share - 1.0), share < 1.0 ? "below" : "above",
+            scene->calibration, share < 1.0 ? "long" : "short");
 }
 
 /* ---- Sources of numbers. */

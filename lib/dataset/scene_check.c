@@ -77,7 +77,7 @@ static sonject_status describe_patch(struct growing_text *text, struct report *r
                      swath->layout.channels == 1 ? "" : "s");
     char pings[PING_LIST_CAPACITY];
     if (swath->skipped.count > 0)
-        growing_text_add(text, "           pings without samples make no row: %s\n",
+        growing_text_add(text, "           pings without samples give no row: %s\n",
                          ping_list_text(&swath->skipped, pings));
     growing_text_add(
         text, "patch      %llu x %llu pixels from row %llu, column %llu\n",

@@ -277,9 +277,10 @@ static sonject_status collect(const struct tracing *tracing, const struct sums_f
     if (status == SONJECT_OK && !names)
         status = report_out_of_memory(tracing->report, "shards");
     if (status == SONJECT_OK && missing_count > 0)
-        status = input_failure(tracing->report, tracing->folder,
-                               "missing of %llu shards: %s; run each with --shard and merge again",
-                               (unsigned long long)shards, names);
+        status = input_failure(
+            tracing->report, tracing->folder,
+            "of %llu shards, these are missing: %s; run each with --shard, then merge again",
+            (unsigned long long)shards, names);
     free(names);
     return status;
 }
@@ -345,7 +346,7 @@ static sonject_status run_shard(struct tracing *tracing, struct injection_result
     free(chain.files);
     sums_folder_clear(&folder);
     if (status == SONJECT_OK && chain.count > 0)
-        report_log(tracing->report, "goes on with what is in %s", tracing->folder);
+        report_log(tracing->report, "continues the work in %s", tracing->folder);
     THEN(status, is_whole && chain.count == 0 ? trace_and_form(tracing, result, is_formed)
                                               : trace_rest(tracing, chain.next, chain.is_complete));
     if (status != SONJECT_OK || !is_whole || *is_formed)

@@ -105,25 +105,23 @@ static sonject_status gather(struct element_taker *taker)
 static sonject_status check_scene(struct report *report, const struct scene *scene)
 {
     if (!aperture_motion_is_still(&scene->motion))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "sonar.motion works only in images: remove it for elements");
+    if (scene->sonar.kind == SONJECT_SONAR_REAL && sonar_array_is_turned(&scene->sonar))
         return report_failure(
             report, SONJECT_ERROR_INPUT,
-            "sonar.motion moves images alone: take it away for the element level");
-    if (scene->sonar.kind == SONJECT_SONAR_REAL && sonar_array_is_turned(&scene->sonar))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the element level's array lies along the track: set sonar.array's "
-                              "heading and pitch to 0");
+            "the array of elements lies along the track: set sonar.array's heading and pitch to 0");
     for (uint32_t i = 0; i < scene->object_count; i++)
         if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL)
-            return report_failure(
-                report, SONJECT_ERROR_INPUT,
-                "objects[%u].level sets an image's levels alone: take it away for "
-                "the element level, where shape and material decide",
-                (unsigned)i);
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "objects[%u].level works only in images: remove it for elements, "
+                                  "whose levels follow from shape and material",
+                                  (unsigned)i);
     if (scene->injection.estimator == SONJECT_ESTIMATOR_CONNECT)
         return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "the brute force estimator is a reference for images: use connect for "
-                          "the element level");
+    return report_failure(
+        report, SONJECT_ERROR_INPUT,
+        "the brute force estimator works only in images: use connect for elements");
 }
 
 static sonject_status hear(struct element_taker *taker, sonject_progress_function progress,

@@ -173,7 +173,7 @@ static sonject_status bad_pixel(struct report *report, const char *path, const s
     const double value = pixel_number(swath->layout.type, swath->stored, index);
     const char *what = !isfinite(value) ? "not a finite number"
                        : value < 0.0    ? "a negative amplitude"
-                                        : "beyond what its transfer function tells amplitudes of";
+                                        : "outside the range of its transfer function";
     char text[160];
     snprintf(text, sizeof text,
              "the pixel at row %llu, column %llu is %s: mend the image or choose another patch",

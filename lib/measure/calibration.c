@@ -27,7 +27,7 @@
 #define TEXTURE_MOST      0.6 /* largest share of the variance of log intensity */
 
 static const char too_small[] =
-    "fewer than 12 tiles of 16 x 16 pixels are neither blank, constant nor clipped";
+    "fewer than 12 tiles of 16 x 16 pixels are usable: the others are blank, constant or clipped";
 
 double pixel_log_intensity(const struct calibration *calibration, const struct stored_swath *swath,
                            double value)
@@ -51,8 +51,8 @@ static void find_ceiling(const struct stored_swath *swath, struct calibration *f
     const double ceiling = swath->is_complex ? INFINITY : find_saturation(swath->values, count);
     size_t clipped = 0;
     double squares = 0.0;
-    found->full_scale.how = "fullest stored number, with more pixels than the one below it by far";
-    found->clipped.how = "share of pixels that have it, errors from strips of rows";
+    found->full_scale.how = "largest stored number, which far more pixels have than the next one";
+    found->clipped.how = "share of pixels with this number; errors from strips of rows";
     found->full_scale.value = ceiling;
     if (!isfinite(ceiling)) {
         found->full_scale.unseen = found->clipped.unseen =
@@ -253,7 +253,7 @@ static sonject_status settle_looks(struct report *report, struct calibration *fo
     if (fit->looks > LOOKS_NO_SPECKLE || !(error < LOOKS_ERROR_MOST) ||
         (isnan(parameter) && fit->misfit > LOOKS_MISFIT))
         looks->unseen = "the logarithms of the plain tiles' numbers are not spread as those of "
-                        "speckle; 1 look is taken";
+                        "speckle; 1 look is assumed";
     else if (isnan(parameter) && log(fit->looks) < fmax(LOOKS_ONE, CLEARLY * error))
         looks->value = 1.0;
     else
@@ -288,18 +288,17 @@ static void tell_curve(struct calibration *found)
     const struct curve_fit *fit = &found->fits[found->family];
     found->parameter.value = fit->parameter;
     found->parameter.error = fit->parameter * fit->parameter_error;
-    found->shape.how =
-        "what pixels 4 to 7 apart have in common in plain tiles; other ground has more";
+    found->shape.how = "correlation of pixels 4 to 7 apart in plain tiles; other ground has more";
     found->looks.value = fmax(1.0, found->looks.value);
     if (fit->texture > 0.0) {
         found->shape.value = 1.0 / fit->texture;
         found->shape.error = fit->texture_error / (fit->texture * fit->texture);
     } else {
-        found->shape.unseen = "plain tiles have no texture that speckle does not explain";
+        found->shape.unseen = "plain tiles have no texture beyond speckle";
     }
     if (!(fit->parameter_error < PARAMETER_UNKNOWN) &&
         found->transfer.kind >= SONJECT_TRANSFER_DECIBEL)
-        found->parameter.unseen = "the tiles do not tell it to within a half";
+        found->parameter.unseen = "the tiles determine it no better than to a half of its value";
 }
 
 static sonject_status find_curve(struct report *report, struct calibration *found,

@@ -340,8 +340,10 @@ sonject_status document_as_yaml(struct report *report, const json_t *document, c
     struct growing_text lines = {NULL, 0, 0, false};
     *text = NULL;
     CHECK_MEMORY(report, document, "a calibration");
-    growing_text_add(&lines, "# A swath's calibration. A scene takes the keys above `measured` by "
-                             "input.calibration;\n# keys of its own win.\n");
+    growing_text_add(
+        &lines,
+        "# A swath's calibration. A scene with input.calibration takes the keys above `measured`;\n"
+        "# the scene's own keys take precedence.\n");
     add_object(&lines, document, 0);
     *text = growing_text_end(&lines);
     CHECK_MEMORY(report, *text, "a calibration");

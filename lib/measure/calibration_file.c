@@ -165,8 +165,8 @@ static void tell_curve(struct report *report, const char *image, const struct st
         (found->transfer.kind < SONJECT_TRANSFER_DECIBEL || !found->parameter.unseen);
     if (!is_seen && swath->unit > 0.0)
         report_note(report,
-                    "%s: its tiles do not tell the grey-level curve, and numbers are taken for "
-                    "amplitudes: if they are none, give the curve as input.transfer",
+                    "%s: its tiles do not show the grey-level curve, so stored numbers are taken "
+                    "as amplitudes: if they are not, give the curve as input.transfer",
                     name);
     else if (is_seen && !curve_fits(fit))
         report_note(report,

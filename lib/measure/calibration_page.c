@@ -234,7 +234,7 @@ static void draw_histogram(struct chart *chart, const struct calibration *found)
         draw_piece(chart, base, tip, 1.6, grey);
     }
     if (found->full_scale.unseen) {
-        draw_legend(chart, 0, true, "no ceiling: nothing piles up", ink);
+        draw_legend(chart, 0, true, "no ceiling: no clipped pixels", ink);
         return;
     }
     const double foot[2] = {found->full_scale.value, 0.0};
@@ -290,7 +290,7 @@ static void draw_law(struct chart *chart, const struct calibration *found,
         before[1] = now[1];
     }
     if (found->looks.unseen)
-        snprintf(text, sizeof text, "looks not seen, 1 taken");
+        snprintf(text, sizeof text, "looks not found, 1 assumed");
     else
         snprintf(text, sizeof text, "looks %.3g +- %.2g", found->looks.value, found->looks.error);
     draw_legend(chart, 0, false, text, blue);
@@ -315,7 +315,7 @@ static void draw_correlation(struct chart *chart, const struct calibration *foun
     chart->high[0] = CALIBRATION_LAGS - 1;
     chart->low[1] = -0.15;
     chart->high[1] = 1.1;
-    draw_frame(chart, "Correlation, and of a Gaussian response", "pixels apart", "of intensity");
+    draw_frame(chart, "Correlation, with a Gaussian response", "pixels apart", "of intensity");
     for (int axis = 0; axis < 2; axis++) {
         double before[2] = {NAN, NAN};
         for (int i = 0; i <= CURVE_POINTS && !widths[axis]->unseen; i++) {
@@ -405,7 +405,7 @@ static void draw_gain(struct chart *chart, const struct calibration *found)
         snprintf(text, sizeof text, "noise floor %.3g +- %.2g dB, of %zu shadows",
                  found->noise_floor_db.value, found->noise_floor_db.error, found->shadows);
     } else {
-        snprintf(text, sizeof text, "noise floor not seen");
+        snprintf(text, sizeof text, "noise floor not found");
     }
     draw_legend(chart, 0, true, text, red);
 }
@@ -423,12 +423,12 @@ static void draw_head(struct canvas *canvas, const struct calibration *found, co
              found->columns, found->tiles.count, curve);
     if (found->transfer.kind >= SONJECT_TRANSFER_DECIBEL) {
         snprintf(curve, sizeof curve, " +- %.2g%s", found->parameter.error,
-                 found->parameter.unseen ? ", not told: amplitude is taken" : "");
+                 found->parameter.unseen ? ", not found: amplitude assumed" : "");
         strncat(text, curve, sizeof text - strlen(text) - 1);
     }
     for (int family = 0; family < CURVE_FAMILIES; family++)
         if (found->alike[family]) {
-            snprintf(alike, sizeof alike, ", not told from %s",
+            snprintf(alike, sizeof alike, ", or equally %s",
                      curve_text(found, (enum curve_family)family, curve));
             strncat(text, alike, sizeof text - strlen(text) - 1);
         }

@@ -136,7 +136,7 @@ static sonject_status find_response(struct report *report, struct calibration *f
     const double count = (double)taken;
     if (taken < TILES_LEAST) {
         free(values);
-        width->unseen = "hardly a plain tile is without pixels that are brighter than speckle";
+        width->unseen = "almost all plain tiles have pixels that are brighter than speckle";
         return SONJECT_OK;
     }
     for (size_t lag = 0; lag < CALIBRATION_LAGS; lag++)
@@ -154,7 +154,7 @@ static sonject_status find_response(struct report *report, struct calibration *f
         errors[lag] = sqrt(squares) / count / (means[0] - far);
     }
     free(values);
-    width->how = "half-power width of a Gaussian response whose speckle is so correlated";
+    width->how = "half-power width of a Gaussian response whose speckle has this correlation";
     if (correlation[1] < fmax(FAINTEST_CORRELATION, CLEARLY * errors[1])) {
         width->unseen = "neighbouring pixels are independent: the response is narrower than 0.7 of "
                         "a pixel";
@@ -250,14 +250,16 @@ static void judge_floor(struct calibration *found, const struct stored_swath *sw
     struct estimate *noise = &found->noise_floor_db;
     double rounding, at_lowest;
     found->shadows = shadows->shadows;
-    noise->how = "mean over shadows amid the seabed, each over the seabed about it";
+    noise->how =
+        "mean over shadows with seabed on all sides, each relative to the seabed around it";
     noise->unseen = found->returns.sides == WATER_UNSEEN
-                        ? "no shadow lies amid the seabed, 9 dB under it"
-                        : "no shadow lies amid the seabed, 9 dB under it; the water column is none";
+                        ? "no shadow has seabed on all sides and lies 9 dB below it"
+                        : "no shadow has seabed on all sides and lies 9 dB below it; the water "
+                          "column is not a shadow";
     if (shadows->shadows == 0)
         return;
     look_at_steps(found, swath, intensity, states, level, &rounding, &at_lowest);
-    noise->unseen = "the shadows lie below what the stored numbers tell apart";
+    noise->unseen = "the shadows are darker than the stored numbers can resolve";
     if ((found->family == CURVE_DECIBEL && at_lowest > LOWEST_SHARE) || rounding > ROUNDING_MOST)
         return;
     noise->unseen = NULL;

@@ -424,9 +424,8 @@ sonject_status fit_moves(struct report *report, const struct drawn_contact *cont
         prepare(&fit, contacts, count);
         if (fit.count < SEEN_LEAST)
             status = report_failure(report, SONJECT_ERROR_INPUT,
-                                    "of the injected contacts hardly any is seen; give the "
-                                    "campaign's targets levels over the seabed (level: "
-                                    "{over_seabed: })");
+                                    "hardly any injected contact can be seen; give the campaign's "
+                                    "targets levels over the seabed (level: {over_seabed: })");
     }
     THEN(status, correlate(&fit, report));
     if (status == SONJECT_OK)

@@ -192,9 +192,9 @@ static sonject_status join_below(struct water *water, struct report *report, dou
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
                 "layers of water that differ by more than 1/500 (%.1f m/s at %.2f m, %.1f m/s on "
-                "average) begin below %.2f m over the seabed, the height of its relief or, with "
-                "injection.interactions above 1, a transducer's side or objects over the sonar, "
-                "of the objects: take that away, or let the layers begin higher",
+                "average) begin below %.2f m over the seabed: remove what needs one sound speed up "
+                "to there (seabed.relief, or objects with injection.interactions above 1, "
+                "sonar.transducer or a top over the sonar), or let the layers begin higher",
                 layer->speed_mps, layer->bottom_m, 1.0 / slowness, highest);
     }
     /* the rest of the highest one stays a layer */

@@ -162,8 +162,8 @@ static sonject_status check_turned(struct report *report, const struct scene *sc
     if (!what)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
-                          "images of an array that is turned from the track are not formed with "
-                          "%s: take that away, or set sonar.array's heading and pitch to 0",
+                          "images of an array that is turned from the track cannot have %s: remove "
+                          "it, or set sonar.array's heading and pitch to 0",
                           what);
 }
 
@@ -253,7 +253,7 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
                              reference_sound_speed_mps);
     if ((table->count > 0) + has_motion + is_real_aperture > 1)
         return report_failure(
-            report, SONJECT_ERROR_INPUT, "%s and %s exclude each other: take one of them away",
+            report, SONJECT_ERROR_INPUT, "%s and %s exclude each other: remove one of the two",
             table->count > 0 && has_motion ? "a measured cross-range response" : "a real aperture",
             table->count > 0 && has_motion ? "motion"
             : table->count > 0             ? "a measured cross-range response"

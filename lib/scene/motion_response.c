@@ -89,11 +89,11 @@ static sonject_status count_aspects(struct motion_response *motion, struct repor
                          (2.0 * motion->strip_m * shortest_scale(motion));
     const double needed = 8.0 * fmax(motion->reach + 1.0, swing);
     if (!(needed <= (double)ASPECTS_MAX))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "sonar.motion: at %.4g m it changes within %.3g m, which more than "
-                              "%zu aspects would have to follow: give longer scales of it",
-                              motion->response->motion_range_m, shortest_scale(motion),
-                              ASPECTS_MAX);
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "sonar.motion: at %.4g m it changes within %.3g m, which more than %zu aspects would "
+            "have to follow: increase its wavelengths or correlation lengths",
+            motion->response->motion_range_m, shortest_scale(motion), ASPECTS_MAX);
     motion->aspects = 64;
     while ((double)motion->aspects < needed)
         motion->aspects *= 2;
@@ -122,7 +122,7 @@ static sonject_status sample_sway(struct motion_response *motion, struct report 
     if (steps > (double)SWAYS_MAX - 2.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "sonar.motion: the patch's aperture of %.4g m holds more than %zu "
-                              "steps of the sway: give longer scales of it",
+                              "steps of the sway: increase its wavelengths or correlation lengths",
                               motion->length_m, SWAYS_MAX);
     if (steps < rows) /* the steps follow the image's rows, unless these are too many */
         steps = fmin(ceil(rows), (double)SWAYS_MAX - 2.0);
@@ -381,11 +381,10 @@ static sonject_status spread_row(const struct motion_response *motion, struct re
     for (int s = 0; s < MOTION_SHARES; s++) {
         const double reach = reach_of_row(motion, real_part, imaginary_part, spread_shares[s]);
         if (spread_shares[s] >= MARGIN_ENERGY_SHARE && reach >= motion->reach * motion->strip_m)
-            return report_failure(
-                report, SONJECT_ERROR_INPUT,
-                "sonar.motion spreads echoes farther than %.4g m along-track, %d times the "
-                "resolution: lessen it",
-                reach, motion->reach);
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "sonar.motion spreads echoes farther than %.4g m along-track, %d "
+                                  "times the resolution: reduce it",
+                                  reach, motion->reach);
         spread_m[s] =
             fmax(spread_m[s], reach - along_track_energy_reach(motion->response, spread_shares[s]));
     }

@@ -54,8 +54,8 @@ static sonject_status check_water_column(const struct patch_view *view, struct r
         return SONJECT_OK;
     return report_failure(
         report, SONJECT_ERROR_INPUT,
-        "the patch begins at %.3f m slant range, in the water column, which no "
-        "patch may %s: %s with column %.0f, behind the bottom's first return at %.3f m",
+        "the patch begins at %.3f m slant range, in the water column, which is not possible %s: %s "
+        "the patch at column %.0f, behind the bottom's first return at %.3f m",
         view->first_range_m, is_level ? "where layers bend the sound" : "over a seabed with relief",
         view->is_reversed ? "end" : "begin",
         first_column + view_patch_column(view, (double)view_water_columns(view)),

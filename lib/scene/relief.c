@@ -56,10 +56,10 @@ static sonject_status check_scene(const struct scene *scene, struct report *repo
     const sonject_material_params *forward = &scene->seabed.forward;
     double lowest, highest;
     if (forward->reflection_kind == SONJECT_REFLECTION_FLUID || forward->reflection != 0.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "a seabed with relief cannot be smooth, for images of the sonar "
-                              "need a level plane: remove seabed.relief or the reflection of "
-                              "seabed.forward");
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "a seabed with relief cannot be smooth, because mirror images of the sonar need a "
+            "level plane: remove seabed.relief or the reflection of seabed.forward");
     if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
         scene->seabed.map == SONJECT_MAP_COHERENT)
         return report_failure(report, SONJECT_ERROR_INPUT,

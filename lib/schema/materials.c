@@ -171,7 +171,7 @@ static sonject_status finish_material(struct reader *reader, const struct tree_n
     sonject_material_params *material = structure;
     if (is_given(node, "reflection") && is_given(node, "fluid"))
         return refuse_key(reader, node, "reflection",
-                          "fluid tells the reflection at every angle; remove one of the two");
+                          "fluid sets the reflection at every angle; remove one of the two");
     if (is_given(node, "reflection"))
         material->reflection_kind = SONJECT_REFLECTION_CONSTANT;
     return SONJECT_OK;

@@ -94,7 +94,7 @@ static sonject_status table_of_file(struct reader *reader, const struct tree_nod
 {
     if (is_given(node, "sound_speeds"))
         return refuse_key(reader, node, "sound_speeds",
-                          "the file tells them; remove one of the two");
+                          "the file gives them, too; remove one of the two");
     return profile_table_read(reader->report, file, find_array(reader, file), table);
 }
 
@@ -109,7 +109,7 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
         return SONJECT_ERROR_INPUT;
     if (table->is_depth && !(depth > 0.0))
         return refuse_key(reader, node, key,
-                          "depths are meant from the sea surface; set depth in surface");
+                          "depths count from the sea surface; set depth in surface");
     profile_table_to_heights(table, depth);
     const double highest = table->positions_m[table->count - 1];
     if (!(highest > 0.0))

@@ -422,7 +422,7 @@ static sonject_status finish_object(struct reader *reader, const struct tree_nod
                                     void *structure)
 {
     if (is_given(node, "target") && count_given(node, "shape parts") == 0)
-        refuse_shape_keys(reader, node, "the target's file tells the shape");
+        refuse_shape_keys(reader, node, "the target's file has the shape");
     return finish_shape(reader, node, structure);
 }
 

@@ -275,7 +275,7 @@ static sonject_status finish_seabed(struct reader *reader, const struct tree_nod
     (void)structure;
     if (is_given(node, "lambert") && is_given(node, "sediment"))
         refuse_relation(reader, node, "lambert", "sediment",
-                        "the sediment tells it; remove one of the two");
+                        "the sediment sets it, too; remove one of the two");
     return SONJECT_OK;
 }
 

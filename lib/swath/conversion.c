@@ -96,7 +96,7 @@ sonject_status range_axis_change(struct report *report, const char *path, enum r
     const double start = other_range(altitude_m, axis, columns->first_m);
     const double width = floor((other_range(altitude_m, axis, last) - start) / step_m) + 1.0;
     if (!(width >= 1.0 && width <= COLUMNS_MAX))
-        return input_failure(report, path, "%g columns would come of it: correct the geometry",
+        return input_failure(report, path, "the result would have %g columns: correct the geometry",
                              width);
     const size_t count = (size_t)width;
     unsigned char *fresh = count <= SIZE_MAX / bytes ? allocate_array(rows, count * bytes) : NULL;
@@ -149,7 +149,7 @@ static sonject_status check_uses(struct report *report, const sonject_convert_pa
                              "keeps no geometry or altitude: take them out, or write .tif");
     if (params->into && params->black_db < params->white_db)
         return input_failure(report, params->into,
-                             "grey levels make a new file: take one of the two out");
+                             "grey levels need a new file: remove one of --db and --into");
     return SONJECT_OK;
 }
 
@@ -207,8 +207,8 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     const bool is_kept = raster_format_keeps_attributes(params->output);
     if (geometry.altitude_varies && !(params->altitude_m > 0.0) && is_kept) {
         report_note(report,
-                    "the altitude changes along the line, and %s has no place for that: "
-                    "it is left out, and sonar.altitude: from_file works with %s alone",
+                    "the altitude changes along the line, and %s has no place for that: it is left "
+                    "out, and sonar.altitude: from_file works only with %s",
                     params->output, params->input);
         geometry.altitude_m = NAN;
     }

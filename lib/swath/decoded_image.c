@@ -112,7 +112,7 @@ static sonject_status ask(struct report *report, const struct decoded_image *ima
                                (decoder->child.number == 0 || decoder->starts != image->start ||
                                 decoder->child.owner != process_number())))
         return input_failure(report, image->path,
-                             "the program that reads it ended before: copy it again");
+                             "the program that reads it ended earlier: copy it again");
     request->handle = image->handle;
     CHECK(decoder_ask(report, decoder, image->path, request, in, &reply, out, bytes, &count));
     return count == bytes ? SONJECT_OK : input_failure(report, image->path, "is cut short");

@@ -26,10 +26,10 @@ static sonject_status start(struct report *report, struct decoder *decoder, cons
     if (error == 0)
         decoder->starts++;
     else if (error == ENOENT || error == EACCES || error == ENOEXEC)
-        status = report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                                "%s: sonject reads it by %s, which cannot be used: %s: install "
-                                "sonject anew",
-                                path, program, reason);
+        status = report_failure(
+            report, SONJECT_ERROR_UNSUPPORTED,
+            "%s: sonject reads it with %s, which cannot be used: %s: install sonject again", path,
+            program, reason);
     else
         status = file_failure(report, program, "start", error);
     free(program);
@@ -47,11 +47,11 @@ static sonject_status tell_end(struct report *report, struct decoder *decoder, c
     if (end.has_exited && end.status == DECODER_STRANGER)
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                               "%s: the program " DECODER_PROGRAM
-                              " is of another version of sonject: install sonject anew",
+                              " is of another version of sonject: install sonject again",
                               path);
     if (is_late || end.is_out_of_time)
         return input_failure(report, path,
-                             "reading it takes longer than it can if it is sound: copy it again");
+                             "reading it takes longer than a sound file would: copy it again");
     return input_failure(
         report, path, "is damaged: the program that reads it ended%s; copy it again", end.reason);
 }

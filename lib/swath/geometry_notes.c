@@ -253,16 +253,16 @@ static sonject_status take_returns(struct report *report, const struct scene *sc
     *wanted->key = "sonar.altitude";
     if (scene->calibrates_itself)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "first_return needs a calibration that is there already: write one "
-                              "(sonject calibrate IMAGE -o FILE), and its name instead of auto");
+                              "first_return needs a calibration that already exists: make one "
+                              "(sonject calibrate IMAGE -o FILE), and name it instead of auto");
     if (returns->count == 0)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "first_return needs an input.calibration that saw them "
+                              "first_return needs an input.calibration that has first returns "
                               "(measured.first_return): give a number instead");
     if ((rows - 1) / returns->every != returns->count - 1)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s has first returns of another image than one of %llu rows: "
-                              "calibrate this one",
+                              "%s has first returns of another image, not of one with %llu rows: "
+                              "calibrate this image",
                               scene->calibration, (unsigned long long)rows);
     *wanted->key = "patch";
     CHECK(patch_rows(report, scene, rows, &first, &count));

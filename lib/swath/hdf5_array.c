@@ -210,8 +210,8 @@ static sonject_status cannot_move(struct report *report, const struct hdf5_array
     const int error = errno;
     if (error == ENOMEM)
         return input_failure(report, array->path,
-                             "reading its array takes more memory than it can if it is sound and "
-                             "stored in chunks of some megabytes: store it anew");
+                             "reading its array takes more memory than a sound one in chunks of "
+                             "some megabytes would: store it again");
     if (error == ENOSPC || error == EDQUOT || error == EFBIG || file_error_is_of_system(error))
         return file_failure(report, array->path, array->writes ? "copy" : "read", error);
     return input_failure(report, array->path, "its array is cut short or damaged: copy it again");

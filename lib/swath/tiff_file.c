@@ -113,7 +113,7 @@ static sonject_status check_coding(struct report *report, const struct tiff_imag
     if (predictor == PREDICTOR_FLOATINGPOINT && TIFFIsByteSwapped(image->file))
         return input_failure(report, image->name,
                              "keeps floating-point differences in the other byte order, which "
-                             "libtiff cannot write: write it anew in this machine's");
+                             "libtiff cannot write: write it again in this machine's");
     if (image->count > BLOCKS_MAX)
         return input_failure(report, image->name,
                              "has more than 2^25 tiles or strips: write it with larger ones");
@@ -199,7 +199,7 @@ static sonject_status check_places(struct report *report, const struct tiff_imag
         if (places[i][0] < places[i - 1][1])
             return input_failure(report, image->name,
                                  "keeps several of its tiles or strips in the same place: write it "
-                                 "anew, each on its own");
+                                 "again, each on its own");
     return SONJECT_OK;
 }
 

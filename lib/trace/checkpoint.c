@@ -153,10 +153,10 @@ sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_cou
         counts->impulses += file->head.impulses;
         if (strcmp(file->head.launches, head->launches) != 0 ||
             file->head.records != checkpoint->record)
-            return input_failure(checkpoint->report, file->path,
-                                 "traced other rays than this machine would, whose "
-                                 "mathematics may differ: trace all, and merge or form, on "
-                                 "machines of one kind");
+            return input_failure(
+                checkpoint->report, file->path,
+                "was traced with other rays than this machine computes, whose mathematics may "
+                "differ: trace, merge and form on machines of one kind");
     }
     return SONJECT_OK;
 }

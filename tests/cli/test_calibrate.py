@@ -168,7 +168,7 @@ def test_shadows_tell_the_noise_floor_and_the_water_column_does_not(sonject, tmp
     numpy.save(tmp_path / "none.npy", sidescan())
     none = calibrated(sonject, "none.npy")
     assert none["measured"]["sides"] == "two" and "noise_floor" not in none["injection"]
-    assert "the water column is none" in none["measured"]["noise_floor"]["not_seen"]
+    assert "the water column is not a shadow" in none["measured"]["noise_floor"]["not_seen"]
 
 
 def test_first_returns_of_long_swaths_are_told_of_some_pings(sonject, tmp_path):
@@ -246,7 +246,7 @@ def test_altitudes_by_first_returns_are_those_at_the_objects(sonject, tmp_path):
     assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx(at[1], rel=0.02)
     two = "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 0, column: 300}}, " \
           "{shape: sphere, diameter: 0.4 m, position: {row: 767, column: 300}}]"
-    told = re.search(r"the altitude goes from (\S+) to (\S+) m over the objects' pings",
+    told = re.search(r"the altitude varies from (\S+) to (\S+) m over the objects' pings",
                      sonject.done("check", "scene.yaml", "--set", two).stdout)
     assert [float(number) for number in told.groups()] == pytest.approx([at[0], at[3]], rel=0.02)
     patch = sonject.done("check", "scene.yaml", "--set", "patch={row: 300, column: 200, rows: 168, columns: 512}", "--set",
@@ -271,9 +271,9 @@ def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
 
 
 @pytest.mark.parametrize("key, why", [
-    ("input.calibration=auto", "first_return needs a calibration that is there already"),
-    ("input.calibration=none.yaml", "first_return needs an input.calibration that saw them"),
-    ("input.calibration=short.yaml", "short.yaml has first returns of another image than one of")])
+    ("input.calibration=auto", "first_return needs a calibration that already exists"),
+    ("input.calibration=none.yaml", "first_return needs an input.calibration that has first returns"),
+    ("input.calibration=short.yaml", "short.yaml has first returns of another image, not of one with")])
 def test_altitudes_need_first_returns(sonject, tmp_path, key, why):
     water_line(tmp_path, 1.0)
     (tmp_path / "none.yaml").write_text("sonject_calibration: 1\ninput: {transfer: {kind: amplitude}}\n")

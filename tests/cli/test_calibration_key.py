@@ -75,7 +75,7 @@ def test_a_scene_takes_what_it_lacks_and_tells_it(sonject, tmp_path):
     }
     truth = json.loads((tmp_path / "out" / "truth.json").read_text())
     assert truth["numbers"] == numbers
-    assert "tells input.transfer.kind, input.transfer.parameter, input.transfer.full_scale" in answer.stderr
+    assert "gives input.transfer.kind, input.transfer.parameter, input.transfer.full_scale" in answer.stderr
 
 
 def test_a_calibrated_scene_is_the_one_that_says_the_same(sonject, tmp_path):
@@ -115,7 +115,7 @@ def test_a_floor_that_no_shadow_tells_is_named_a_fallback(sonject, tmp_path):
     numbers, answer = run_document(sonject, tmp_path)
     assert numbers["noise_floor_db"] == {"value": pytest.approx(-22.5), "from": "fallback"}
     assert numbers["transfer"] == {"kind": "amplitude", "from": "default"}
-    assert "no shadow of the patch tells the noise floor, and 22.5 dB under the mean seabed is taken" in answer.stderr
+    assert "no shadow in the patch shows the noise floor, so 22.5 dB under the mean seabed is assumed" in answer.stderr
 
 
 def test_shadows_of_a_patch_tell_its_floor_and_the_water_column_does_not(sonject, tmp_path):

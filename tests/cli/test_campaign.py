@@ -295,7 +295,7 @@ def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground,
                    "--set", "chip={rows: 16, columns: 16}", "--verbose")
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stderr.splitlines() if "validation" in line]
-    uses = f"{told}/images for validation, too" if told else ""
+    uses = f"{told}/images also for validation" if told else ""
     assert len(notes) == (told is not None) and all(uses in note for note in notes)
 
 
@@ -304,7 +304,7 @@ def test_images_that_cut_what_they_show_are_noted(ground, command):
     done = command("campaign", "campaign.yaml", "-o", "narrow", "--set", "empty=0", "--set", "images=4",
                    "--set", "chip={rows: 64, columns: 16}")
     assert done.returncode == 0, done.stderr
-    cut = int(re.search(r"note: (\d) of 4 images have an object whose highlight or shadow the image's edge cuts", done.stderr)[1])
+    cut = int(re.search(r"note: (\d) of 4 images have an object whose highlight or shadow is cut by the image's edge", done.stderr)[1])
     assert cut > 1
 
 
@@ -942,7 +942,7 @@ def test_a_row_of_a_table_is_drawn_whole(ground, command):
     ("heading,", "class,", "bodies.csv:2:36: class", "the campaign itself sets class"),
     ("heading,", "burial,", "targets[0].draw.burial", "is a column of the table, too"),
     ("[cm]", "[cm", "bodies.csv:2:24: height", "no ]"),
-    ("30 deg,2", "30 deg,-2", "bodies.csv:4:31: count", "'-2' is no number"),
+    ("30 deg,2", "30 deg,-2", "bodies.csv:4:31: count", "'-2' is not a number"),
     ("count", "name", "bodies.csv:2:1: count", "no column has this name"),
     (",1 #", " #", "bodies.csv:5: ", "has 5 columns, but 6"),
     (BODIES, "length\n", "bodies.csv", "there are no rows"),
@@ -1073,7 +1073,7 @@ HOSTILE = [
       f"swaths[0].avoid=[{{row: 0, column: 0, rows: {ROWS}, columns: {COLUMNS}}}]"], "swath0.png",
      f"no place for objects in images of {ROWS} x {COLUMNS}"),
     (["swaths[0].avoid=[{along_track: [90 m, 95 m], slant_range: [40 m, 41 m]}]"], "swath0.png",
-     "shows nothing at 90 to 95 m along the track and slant ranges of 40 to 41 m"),
+     "does not reach 90 to 95 m along the track and slant ranges of 40 to 41 m"),
     (["swaths[0].avoid=[{along_track: [2 m, 1 m], slant_range: [40 m, 41 m]}]"], "swaths[0].avoid[0].along_track",
      "begins at 2 m, which is not below its end, 1 m"),
     (["swaths[0].avoid=[{row: 2, column: 1, rows: 3}]"], "swaths[0].avoid[0]", "row and column and rows and columns; give one of these"),
@@ -1169,14 +1169,14 @@ TOLD = [
     ("sonject_campaign", "must be 1"), ("images", "whole number"), ("chip.rows", "16...8192"),
     ("empty", "0...1"), ("outputs", "did you mean 'shadow'?"),
     ("labels[0]", "did you mean 'yolo'?"), ("splits", "names a folder"), ("swaths[1].path", "missing"),
-    ("draw.level", "is of objects: write objects[].level"), ("draw.objects[1].pitch", "is of objects"),
+    ("draw.level", "is a key of objects: write objects[].level"), ("draw.objects[1].pitch", "is a key of objects"),
     ("draw.seabed", "is a section"), ("draw.class", "scenes have no such key; there are sonject, band"),
     ("sonar.frequncy", "did you mean 'frequency'?"), ("headnig", "did you mean 'heading'?"),
     ("patch.rows", "the campaign itself"), ("seabed.lambert", "swap them"),
     ("sonar.altitude", "not a finite number"), ("sonar.frequency", "same unit"),
     ("sonar.bandwidth", "above 0"), ("sonar.resolution", "'uniform'"), ("weights", "all 0"),
     ("targets[0].class", "1 to"), ("diamter", "did you mean 'diameter'?"),
-    ("targets[1].object", "missing"), ("targets[1].draw.sonar.altitude", "is of scenes"),
+    ("targets[1].object", "missing"), ("targets[1].draw.sonar.altitude", "is a key of scenes"),
     ("clutter.number", "0 to 50"),
 ]
 

@@ -160,7 +160,7 @@ def test_png_goes_out_as_a_new_png(sonject, tmp_path, sides):
     before = (sides[0] // 64).astype("u1")
     (tmp_path / "line.png").write_bytes(images.png_bytes(before))
     answer = check_injection(sonject, tmp_path, "line.png", before, ".png")
-    assert "note: image.png is written anew" in answer.stderr
+    assert "note: image.png is a new file" in answer.stderr
     assert sonject.done("run", "scene.yaml", "-o", "again", "--quiet").stderr == ""
     assert_refused(sonject("convert", "line.png", "b.png", "--into", "line.png"), 3,
                    "not changed in place: write a new .tif")
@@ -240,10 +240,10 @@ def test_a_recording_that_says_ground_range(sonject, tmp_path, line):
     (["plain.npy", "x.xtf", "--into", "line.xtf", "--channel", "port"], 3, "must be alike"),
     (["line.xtf", "x.tif", "--channel", "port", "--range-axis", "slant"], 3, "slant range already"),
     (["line.xtf", "x.tif"], 3, "choose one by input.channel or --channel, 1 (port), 2 (starboard)"),
-    (["line.xtf", "x.xtf", "--into", "line.xtf", "--channel", "port", "--db", "-60:0"], 3, "grey levels make a new file"),
+    (["line.xtf", "x.xtf", "--into", "line.xtf", "--channel", "port", "--db", "-60:0"], 3, "grey levels need a new file"),
     (["plain.npy", "x.pgm"], 3, "without loss as .tif, .png, .npy or .h5"),
     (["plain.npy"], 2, "OUT is missing"),
-    (["plain.npy", "x.tif", "y.tif"], 2, "IN and OUT are wanted"),
+    (["plain.npy", "x.tif", "y.tif"], 2, "takes IN and OUT; what is"),
     (["strange.dpx", "x.tif"], 3, "is a DPX file"),
     (["strange.jp2", "x.tif"], 3, "is a JPEG 2000 file"),
 ])

@@ -56,8 +56,8 @@ def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     for setting, words in (
             ("sonar.resolution=3.7 mm", "no aperture on a straight track resolves 0.0037 m"),
-            ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion moves images alone"),
-            ("objects[0].level={over_seabed: 14 dB}", "objects[0].level sets an image's levels alone")):
+            ("sonar.motion={random: {rms: 1 mm, correlation: 1 m}}", "sonar.motion works only in images"),
+            ("objects[0].level={over_seabed: 14 dB}", "objects[0].level works only in images")):
         assert_refused(sonject("elements", scene, "-o", "out", "--set", setting), 3, words)
     assert not files_below(tmp_path / "out")
     assert_refused(sonject("elements", scene, "-o", "scene.yaml/out", "--quiet"), 5, "scene.yaml")

@@ -109,8 +109,8 @@ def test_bright_points_tell_no_heights(sonject, folder):
     page = page_data(folder, "fitted.html")
     assert page["classes"] == ["point"]
     notes = page["notes"].splitlines()
-    assert notes == ["shadows are seen in 0 of 13 contacts, so heights and the noise floor stay",
-                     "sizes that are fixed, or of a table, are not fitted: rock (length, width)"]
+    assert notes == ["only 0 of 13 contacts show a shadow, so heights and the noise floor stay as they are",
+                     "sizes that are fixed or come from a table are not fitted: rock (length, width)"]
     assert page["unmatched"] and all(note in done.stderr for note in notes)
 
 
@@ -184,10 +184,10 @@ def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tm
         contacts += f"set/all/images/{path.stem}.tif,{row},{column},{rows},{columns},\n"
     (tmp_path / "contacts.csv").write_text(contacts.replace("starboard", ""))
     done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
-    assert done.returncode == 3 and "line.xtf: has two sides that are swaths of the campaign" in done.stderr
+    assert done.returncode == 3 and "line.xtf: shows two sides, which are two swaths of the campaign" in done.stderr
     (tmp_path / "contacts.csv").write_text(contacts)
     done = sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
     unmatched = page_data(tmp_path, "fitted.html")["unmatched"]  # stones of one size beside drawn targets
-    assert unmatched and f"{len(unmatched)} of the contacts' measures are not matched by injected ones" in done.stderr
+    assert unmatched and f"{len(unmatched)} measures of injected contacts do not match those of real ones" in done.stderr
     found = [sum(extent["bins"]) for extent in page_data(tmp_path, "fitted.html")["fit"] if extent]
     assert min(found) > 18, found  # there are 24 contacts, and the port side shows none of the stones

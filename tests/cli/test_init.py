@@ -69,7 +69,7 @@ def test_no_answer_leaves_no_file(sonject, image):
 def test_a_file_that_is_there_stays(sonject, image):
     image.with_suffix(".yaml").write_text("mine")
     answer = init(sonject, "swath.npy", answers=ANSWERS)
-    assert answer.returncode == 3 and "swath.yaml: is there already" in answer.stderr
+    assert answer.returncode == 3 and "swath.yaml: already exists" in answer.stderr
     assert image.with_suffix(".yaml").read_text() == "mine"
 
 
@@ -100,7 +100,7 @@ def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     assert answer.returncode == 0, answer.stderr
     assert "(from_file: as recorded, 7 m in the mean; or a number) [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
-    assert "bandwidth: 10 kHz # c / 2 over the column spacing" in scene  # 400 columns reach 30 m
+    assert "bandwidth: 10 kHz # c / 2 divided by the column spacing" in scene  # 400 columns reach 30 m
     assert "channel: port" in scene and "geometry: from_file" in scene and "altitude: from_file" in scene
 
 
@@ -108,7 +108,7 @@ def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject,
     answer = init(sonject, "swath.npy", answers=[*ANSWERS[:3], "from_file", *ANSWERS[3:5], "", ""])
     assert answer.returncode == 0, answer.stderr
     assert "does not say the sonar's altitude: give it instead of from_file" in answer.stderr
-    assert "bandwidth: 30 kHz # c / 2 over the column spacing" in image.with_suffix(".yaml").read_text()  # 2.5 cm
+    assert "bandwidth: 30 kHz # c / 2 divided by the column spacing" in image.with_suffix(".yaml").read_text()  # 2.5 cm
 
 
 @pytest.mark.parametrize("share, level", [(1, 15), (0.35, None)])
@@ -131,7 +131,7 @@ def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
                  "--first-range", "0")
     answer = init(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
     assert answer.returncode == 0, answer.stderr
-    shown = float(re.search(r"\(first_return: where it begins in each ping, (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
+    shown = float(re.search(r"\(first_return: from the first return of each ping, (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
     assert shown == pytest.approx(120 * 0.025, rel=0.02)
     assert "altitude: first_return" in (tmp_path / "swath.yaml").read_text()
     assert float(re.search(r"altitude (\S+) m", answer.stdout)[1]) == pytest.approx(shown, rel=0.01)

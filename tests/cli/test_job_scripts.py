@@ -213,11 +213,11 @@ def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, projec
     slurm.start_again(f"{parts.array}_1")
     slurm.start_again(f"{parts.array}_3")
     said, code = parts.wait()
-    assert code == 3 and "out/work: missing of 4 shards: 2, 4;" in said
+    assert code == 3 and "out/work: of 4 shards, these are missing: 2, 4;" in said
     assert "stopped; run the same command again" in parts.log(1)
     for shard in (1, 3):
         assert parts.task(shard)["Restarts"] == "1"
-        assert parts.log(shard).count("goes on with what is in out/work") == 1
+        assert parts.log(shard).count("continues the work in out/work") == 1
     # The other parts. One is asked to stop, as Slurm does before the time limit.
     parts, (asked,) = start_and_freeze(slurm, project, "2,4", 2)
     parts.merge_early()

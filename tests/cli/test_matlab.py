@@ -147,7 +147,7 @@ def test_a_recording_is_refused(octave, scene, tmp_path):
 def test_notes_are_warnings(octave, scene):
     said = octave(f"sonject([], '{scene}', 'objects[0].diameter', '10 cm', 'objects[0].burial', '9 cm', "
                   "'objects[0].level.target_strength', '-120 dB', 'injection.noise_floor', '-18 dB');")
-    assert said.startswith("warning: 'ball' drowns in the seabed: ") and "note" not in said
+    assert said.startswith("warning: 'ball' cannot be seen: ") and "note" not in said
 
 
 def test_the_programs_of_page_and_help_run(octave, tmp_path):

@@ -234,7 +234,7 @@ def test_numbers_that_cannot_be_measured(sonject, tmp_path):
 
 
 @pytest.mark.parametrize("change, note", [
-    ("{diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "drowns in the seabed"),
+    ("{diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "'ball' cannot be seen: neither its highlight"),
     ("{diameter: 60 cm, level: {over_seabed: 0 dB}", "the highlight of 'ball' does not stand out from the seabed"),
     ("{diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("{diameter: 30 cm", None)])
 def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):

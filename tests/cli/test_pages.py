@@ -294,10 +294,10 @@ MISTAKES = {
     "is of no format that sonject knows ...": "sonject check scene.yaml --set input.path=campaign.yaml",
     "there is no such scene file ...": "sonject check none.yaml",
     "holds another result ...": "sonject run scene.yaml -o mistake && sonject run scene.yaml -o mistake --seed 2",
-    "drowns in the seabed ...": "sonject run scene.yaml -o drowned --set 'objects[0]={shape: sphere, diameter: 10 cm, "
+    "cannot be seen ...": "sonject run scene.yaml -o drowned --set 'objects[0]={shape: sphere, diameter: 10 cm, "
                                 "burial: 9 cm, level: {target_strength: -120 dB}}' && false",
     "no device has ...": "sonject run scene.yaml -o nowhere --device none",
-    "missing of ... shards: ...": "sonject run scene.yaml -o part --shard 1/2 && sonject merge part",
+    "of ... shards, these are missing: ...": "sonject run scene.yaml -o part --shard 1/2 && sonject merge part",
 }
 
 

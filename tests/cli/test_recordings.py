@@ -265,7 +265,7 @@ def test_of_a_whole_line_the_altitude_is_that_at_the_objects(sonject, tmp_path, 
     for position, altitude in ("", altitudes[29:31].mean()), ("position: {along_track: 2 m, slant_range: 18 m}", altitudes[20]):
         (tmp_path / "other.yaml").write_text(f"{kept}\nobjects: [{{shape: sphere, diameter: 0.4 m, {position}}}]\n")
         assert f"altitude {altitude:.3g} m" in sonject.done("check", "other.yaml").stdout
-    told = rf"the altitude goes from {altitudes[15]:.2f} to {altitudes[45]:.2f} m"
+    told = rf"the altitude varies from {altitudes[15]:.2f} to {altitudes[45]:.2f} m"
     assert told in sonject.done("check", "two.yaml").stdout
     assert told in sonject.done("run", "two.yaml", "-o", "two").stderr
     # the mean altitude of a patch counts if the user has chosen the patch
@@ -330,9 +330,9 @@ def test_pings_without_samples_make_no_row_and_are_named(sonject, tmp_path, side
     kept = [row for row in range(ROWS) if row not in gone]
     assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), sides[0][kept])
     scene = write_scene(tmp_path, f"line.{kind}", channel="port")
-    assert "pings without samples make no row: 3, 20, 21, 59\n" in sonject.done("check", scene).stdout
+    assert "pings without samples give no row: 3, 20, 21, 59\n" in sonject.done("check", scene).stdout
     answer = sonject.done("run", scene, "-o", "out")
-    assert "note: pings without samples make no row: 3, 20, 21, 59\n" in answer.stderr
+    assert "note: pings without samples give no row: 3, 20, 21, 59\n" in answer.stderr
     truth = json.loads((tmp_path / "out" / "truth.json").read_text())
     assert truth["patch"]["skipped_pings"] == sorted(gone) and truth["patch"]["empty_rows"] == []
     before, after = ((tmp_path / name).read_bytes() for name in (f"line.{kind}", f"out/image.{kind}"))

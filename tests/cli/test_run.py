@@ -192,7 +192,7 @@ def test_a_sediment_is_the_lambert_that_it_tells(sonject, scene, tmp_path):
     one, other = (images.read_tiff(tmp_path / name / "energy.tif") for name in ("sand", "number"))
     assert abs(one - other).max() < 1e-5 * one.max()
     answer = sonject("run", scene, "-o", "high", "--set", "seabed.sediment=silt", "--set", "sonar.frequency=300 kHz")
-    assert "its model holds from 10 to 100 kHz" in answer.stderr
+    assert "its model is valid from 10 to 100 kHz" in answer.stderr
 
 
 def test_a_level_is_over_the_seabed_at_the_echos_range(sonject, scene, tmp_path):
@@ -212,9 +212,9 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     chosen = ["--set", "input.path=swath.png"]
     usual = sonject.done("run", scene, "-o", "usual", *chosen)
     floor, cut, note, result = usual.stderr.splitlines()
-    assert floor.startswith("sonject: note: no shadow of the patch tells the noise floor, and 22.5 dB under")
+    assert floor.startswith("sonject: note: no shadow in the patch shows the noise floor, so 22.5 dB under")
     assert "the highlight of 'ball' is cut at the image's ceiling" in cut
-    assert note.startswith("sonject: note: image.png is written anew")
+    assert note.startswith("sonject: note: image.png is a new file")
     assert result == "sonject: the result is in usual"
     header = (tmp_path / "usual" / "image.png").read_bytes()[16:26]
     assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, 0)
@@ -223,8 +223,8 @@ def test_verbose_tells_what_happens_to_an_8_bit_swath(sonject, scene, tmp_path):
     *news, last = answer.stderr.splitlines()
     assert last == "sonject: the result is in result"
     assert all(line.startswith("sonject: ") for line in news)
-    for words in ("device '", "trace_rough.cl built in", "tells the noise floor",
-                  "of the patch's pixels 3 are at the image's full scale"):
+    for words in ("device '", "trace_rough.cl built in", "shows the noise floor",
+                  "3 pixels of the patch are at the image's full scale"):
         assert len([line for line in news if words in line]) == 1, (words, news)
     quiet = sonject.done("run", scene, "-o", "quiet", *chosen, "--verbose", "--quiet")
     assert (quiet.stdout, quiet.stderr) == ("", "")

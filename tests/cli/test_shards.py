@@ -44,12 +44,12 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
     for shard in (3, 1):
         answer = sonject("run", scene, "-o", "result", "--shard", f"{shard}/4")
         assert (answer.returncode, answer.stdout) == (0, "")
-        assert answer.stderr == "sonject: the shard is done; once all are: sonject merge result\n"
-    assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2, 4;")
+        assert answer.stderr == "sonject: the shard is done; after all shards, run sonject merge result\n"
+    assert_refused(sonject("merge", "result"), 3, "of 4 shards, these are missing: 2, 4;")
     stopped = sonject("run", scene, "-o", "result", "--shard", "2/4", "--exit-after", "1e-9")
     assert stopped.returncode == 85
     command(sonject, "run", scene, "-o", "result", "--shard", "4/4")
-    assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2 (not finished);")
+    assert_refused(sonject("merge", "result"), 3, "of 4 shards, these are missing: 2 (not finished);")
     # Another process finishes the shard meanwhile. Running the shard again changes nothing.
     other = tmp_path / "other"
     command(sonject, "run", scene, "-o", "other", "--shard", "2/4")
@@ -68,10 +68,10 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
         assert answer.returncode == 0 and "already" in answer.stderr
     # merge checks a merged folder, too
     (folder / "shadow.png").rename(tmp_path / "away")
-    assert_refused(sonject("merge", "result"), 3, "result: is merged already, but shadow.png")
+    assert_refused(sonject("merge", "result"), 3, "result: is already merged, but shadow.png")
     (tmp_path / "away").rename(folder / "shadow.png")
     labelled = sonject("merge", "result", "--labels", "yolo")
-    assert_refused(labelled, 3, "result: is merged already, without those labels")
+    assert_refused(labelled, 3, "result: is already merged, without those labels")
     assert {path.name for path in folder.iterdir()} == RESULTS
 
 
@@ -184,7 +184,7 @@ def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
     folder, low, high = (tmp_path / name for name in ("parts", "parts/low", "parts/high"))
     command(sonject, "run", scene, "-o", "whole", *bands)
     command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "2/2")
-    assert_refused(sonject("merge", "parts"), 3, "parts/high/work: missing of 2 shards: 1;")
+    assert_refused(sonject("merge", "parts"), 3, "parts/high/work: of 2 shards, these are missing: 1;")
     assert [path.name for path in folder.glob("*/*")] == ["work", "work"]
     command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "1/2")
     high.rename(tmp_path / "away")
@@ -212,7 +212,7 @@ def test_an_accuracy_takes_as_many_rays_in_shards_and_stages(sonject, scene, tmp
     rays = json.loads((tmp_path / "one/run.json").read_text())["options"]["ray_scale"]
     error = json.loads((tmp_path / "one/truth.json").read_text())["energy_error"]
     assert rays != 1 and 0 < error < 0.04
-    assert f"accuracy: energies of changed pixels are known to {100 * error:.2g} %" in answer.stderr
+    assert f"accuracy: energies of changed pixels have errors of {100 * error:.2g} %" in answer.stderr
     for shard in ("1/2", "2/2"):
         command(sonject, "run", scene, "-o", "parts", "--shard", shard, *asked)
     command(sonject, "merge", "parts")

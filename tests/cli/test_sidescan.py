@@ -60,7 +60,7 @@ def test_altitudes_of_a_table_are_those_at_the_objects(sonject, tmp_path, line):
     assert "altitude 7.5 m" in text and "note: the altitude" not in text
     two = "objects=[{shape: sphere, diameter: 0.4 m, position: {row: 5, column: 150}}, " \
           "{shape: sphere, diameter: 0.4 m, position: {row: 25, column: 150}}]"
-    assert "note: the altitude goes from 6.75 to 9.00 m" in sonject.done("check", scene, "--set", two).stdout
+    assert "note: the altitude varies from 6.75 to 9.00 m" in sonject.done("check", scene, "--set", two).stdout
 
 
 def test_first_slant_ranges_come_from_a_table_of_pings(sonject, tmp_path, line):
@@ -152,9 +152,9 @@ def test_grey_images_are_the_line_as_it_is_converted(sonject, tmp_path, line):
         changed += (image != of_line).sum()
     assert changed > 12 * 20
     (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "data/all/images/00000000.png,4,9,5,20\n" * 12)
-    assert_refused(sonject("fit", "campaign.yaml", "contacts.csv", "-o", "fitted.yaml"), 3, "00000000.png: has grey levels of -50 dB, -20 dB")
+    assert_refused(sonject("fit", "campaign.yaml", "contacts.csv", "-o", "fitted.yaml"), 3, "00000000.png: was made with grey: [-50 dB, -20 dB]")
     for more, words in ("grey: [-20 dB, -50 dB]", "black must be below white"), ("grey: -50 dB", "must be two levels"), (
-            "grey: [-50 dB, -20 dB]\nformat: as_input", "and format: as_input exclude each other"):
+            "grey: [-50 dB, -20 dB]\nformat: as_input", "grey: cannot be combined with format: as_input"):
         (tmp_path / "campaign.yaml").write_text(CAMPAIGN + more)
         assert_refused(sonject("campaign", "campaign.yaml", "-o", "none"), 3, words)
 
@@ -173,10 +173,10 @@ def test_campaigns_know_the_highest_ping(sonject, tmp_path, line):
 
 @pytest.mark.parametrize("more, words", [
     ("medium: {layers: [{bottom: 0 m, sound_speed: 1500 m/s}, {bottom: 3 m, sound_speed: 1520 m/s}]}",
-     "begins at 1.575 m slant range, in the water column, which no patch may where layers bend the sound: begin with "
-     "column "),
+     "begins at 1.575 m slant range, in the water column, which is not possible where layers bend the sound: begin "
+     "the patch at column "),
     ("seabed: {relief: [mound: {position: {row: 30, column: 120}, height: 0.1 m, radius: 1 m}]}",
-     "in the water column, which no patch may over a seabed with relief: begin with column 40, behind the bottom's "
+     "in the water column, which is not possible over a seabed with relief: begin the patch at column 40, behind the bottom's "
      "first return at 6.000 m"),
 ])
 def test_what_may_not_begin_in_the_water_column_says_why(sonject, tmp_path, line, more, words):
@@ -427,8 +427,8 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
     assert numpy.mean(numpy.array(begins) < 1) > 0.9 and min(grounds) < 0.35
     for chip, words in (("[100, 200]", "both.tif has no place for images of 16 x 60 pixels, at 100 to 200 times the "
                          "sonar's altitude, 4 to 7 m"),
-                        ("[0.5, 2]", "chip.range_over_altitude: must rise within 1...1000"),
-                        ("[3, 2]", "chip.range_over_altitude: must rise within 1...1000"),
+                        ("[0.5, 2]", "chip.range_over_altitude: must be two rising numbers within 1...1000"),
+                        ("[3, 2]", "chip.range_over_altitude: must be two rising numbers within 1...1000"),
                         ("3", "chip.range_over_altitude: must be two numbers, [least, most]")):
         (tmp_path / "campaign.yaml").write_text(campaign.replace("[1.1, 1.8]", chip))
         assert_refused(sonject("campaign", "campaign.yaml", "-o", "none"), 3, words)

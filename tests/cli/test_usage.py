@@ -40,7 +40,7 @@ def test_help_of_a_key_is_its_row(sonject):
     answer = sonject("help", "sonar.altitude")
     assert answer.returncode == 0
     key, meaning, *facts = answer.stdout.splitlines()
-    assert key == "sonar.altitude (must be there)"
+    assert key == "sonar.altitude (required)"
     row = f"| `sonar.altitude` * | {meaning.strip()} |"
     assert row in (SOURCE / "tools/scenes/KEYS.md").read_text(encoding="utf-8")
     assert "    unit: m, km, cm, mm, from_file or first_return" in facts

@@ -543,7 +543,8 @@ CLAIM(what_lies_before_the_bottom_is_refused)
                    set_up(sea));
     sea_move(sea, FIRST_RANGE);
     sea_set_layers(sea, layers, 2);
-    EXPECT_REFUSED(sea, "which no patch may where layers bend the sound: begin with column",
+    EXPECT_REFUSED(sea,
+                   "which is not possible where layers bend the sound: begin the patch at column",
                    set_up(sea));
     sea_set_layers(sea, NULL, 0);
     place_in_pixels(sea_add_sphere(sea, 0.2, 0.0), 20.0, 90.0);

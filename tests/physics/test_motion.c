@@ -420,7 +420,7 @@ CLAIM(motion_that_is_refused)
     sea->motion->random_rms_m = 1e-3;
     assert_int_equal(sea_check_response(sea), SONJECT_OK);
     sea->motion->random_rms_m = 10.0;
-    EXPECT_REFUSED(sea, "lessen it", sea_check_response(sea));
+    EXPECT_REFUSED(sea, "reduce it", sea_check_response(sea));
     sea->motion->random_rms_m = 0.0;
     assert_int_equal(
         motion_table_set(&sea->bench->scene.motion.yaw_table, &sea->bench->report, x, yaw, 2),

@@ -183,7 +183,7 @@ WITH_LABELS(test_coco_that_is_wrong)
          "image"},
         {"{\"images\": [{\"id\": 7, \"file_name\": \"a\\u0007.png\"}],\n" CATEGORIES
          "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
-         "%/l.json: annotations[0]: the image's name is no text"},
+         "%/l.json: annotations[0]: the image's name must be a text"},
         {"{\"images\": [{\"id\": 7, \"file_name\": \"b.npy\", \"width\": 0}],\n" CATEGORIES
          "\"annotations\": [" ANNOTATION("7", "1", "[1, 2, 3, 4]") "]}",
          "%/l.json: annotations[0]: its image's width or height is not a whole number of pixels"},
@@ -304,7 +304,7 @@ WITH_LABELS(test_yolo)
 WITH_LABELS(test_yolo_that_is_wrong)
 {
 #define NO_LINE                                                                                    \
-    " is not a class's number and four fractions, of the box's centre and sides, x before y"
+    " is not a class's number and four fractions: the box's centre x and y, its width and height"
     static const struct wrong wrong[] = {
         {"", "%: holds no contacts"},
         {"0 0.5 0.5 0.2 0.2\n0 0.5 0.5 0.2\n", "%/a.txt:2: '0 0.5 0.5 0.2'" NO_LINE},
@@ -625,7 +625,8 @@ WITH_LABELS(test_classes_that_are_taken_as_one_are_told)
     report.log = NULL;
     report.host = NULL;
     contact_set_clear(&set);
-    assert_string_equal(noted, "contacts of 2 classes are taken as one: mine (2), boulder (1)");
+    assert_string_equal(noted,
+                        "contacts of 2 classes are treated as one class: mine (2), boulder (1)");
     assert_int_equal(contact_set_read(&report, file_in("l.csv"), &choice, &set),
                      SONJECT_ERROR_INPUT);
     contact_set_clear(&set);
@@ -664,7 +665,7 @@ WITH_LABELS(test_quantiles_that_are_wrong)
          "%/q.yml:1:1: contacts: missing; add it (how many they were read off)"},
         {"contacts: 12\nshadow_range: [1, 2]\n",
          "%/q.yml:1:1: quantiles: missing; add it (shares of all contacts)"},
-        {Q, "%/q.yml:1:1: tells no extents: add highlight_along, highlight_range, shadow_along or "
+        {Q, "%/q.yml:1:1: has no extents: add highlight_along, highlight_range, shadow_along or "
             "shadow_range"},
         {Q "shadow_range: 1 m\n",
          "%/q.yml:3:15: shadow_range: must be a list of 1 to 32 numbers that rise"},

@@ -336,7 +336,7 @@ TEST(what_overrides_give_is_not_written_over)
     for (size_t i = 0; i < COUNT(overrides); i++) {
         char unchanged[200];
         assert_null(fitted_text(flow_file, overrides[i], unchanged));
-        assert_non_null(strstr(folder->report.message, "gives what a fit writes"));
+        assert_non_null(strstr(folder->report.message, "gives a key that the fit changes"));
         assert_memory_equal(folder->report.message, "--set ", 6);
     }
 }

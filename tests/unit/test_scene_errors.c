@@ -216,7 +216,7 @@ TEST(test_keys_that_exclude_or_need_each_other)
          ":4:50: seabed.sediment.grain_size: must be -1...9, not 10"},
         {START INPUT "sonar: {frequency: 10e3, bandwidth: 1e3, altitude: 10}\n"
                      "seabed: {lambert: -20 dB, sediment: silt}\n",
-         ":4:19: seabed.lambert: the sediment tells it; remove one of the two"},
+         ":4:19: seabed.lambert: the sediment sets it, too; remove one of the two"},
         {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
                              "; did you mean 'steel'?"},
         {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",
@@ -226,7 +226,7 @@ TEST(test_keys_that_exclude_or_need_each_other)
          ":7:23: objects[0].material.fluid.speed: missing; a fluid needs it (ratio to the "
          "water's)"},
         {MATERIAL "{reflection: 0.9, fluid: {density: 2, speed: 3}}\n",
-         ":7:28: objects[0].material.reflection: fluid tells the reflection at every angle; remove "
+         ":7:28: objects[0].material.reflection: fluid sets the reflection at every angle; remove "
          "one of the two"},
         {BASE "seabed: {forward: medium snad}\n",
          ":4:19: seabed.forward: 'medium snad' is not one of " KNOWN_MATERIALS

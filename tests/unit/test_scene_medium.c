@@ -146,7 +146,7 @@ TEST(test_what_is_wrong)
         {PROFILE "{heights: [1, 2], depths: [1, 2], sound_speeds: [1500, 1500]}\n",
          ":5:12: medium.profile: more than one of file, heights and depths is there; give one"},
         {PROFILE "{sound_speeds: [1500, 1500], file: " CAST "}\n",
-         ":5:27: medium.profile.sound_speeds: the file tells them; remove one of the two"},
+         ":5:27: medium.profile.sound_speeds: the file gives them, too; remove one of the two"},
         {PROFILE "{heights: [1, 2]}\n",
          ":5:12: medium.profile.sound_speeds: missing; heights need it"},
         {PROFILE "{heights: [1, 2], sound_speeds: [1500]}\n",
@@ -163,7 +163,7 @@ TEST(test_what_is_wrong)
          ":5:29: medium.profile.heights[2]: must go on rising from one to the next by at least "
          "1e-06 m; 2 follows 3"},
         {PROFILE "{depths: [1, 2], sound_speeds: [1500, 1500]}\n",
-         ":5:21: medium.profile.depths: depths are meant from the sea surface; set depth in "
+         ":5:21: medium.profile.depths: depths count from the sea surface; set depth in "
          "surface"},
         {PROFILE "{depths: [40, 30], sound_speeds: [1500, 1500]}\n" SURFACE,
          ":5:21: medium.profile.depths: must lie over the seabed: the whole profile is below it "

@@ -257,7 +257,7 @@ TEST(test_scenes_that_name_targets_wrongly)
                          ":5:12: objects[0].target: has no value; write one or remove the key");
     write_target("sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
     expect_scene_refused(OBJECT "target: target.yaml\n    diameter: 1\n",
-                         ":6:15: objects[0].diameter: the target's file tells the shape; remove "
+                         ":6:15: objects[0].diameter: the target's file has the shape; remove "
                          "it");
     expect_scene_refused(OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "

@@ -409,7 +409,7 @@ CLEAN(test_only_what_goes_together_is_added_up)
     EXPECT_OK(&report, checkpoint_begin_adding(&checkpoint, &report, files, 1));
     checkpoint.record = 2;
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(report.message, "traced other rays"));
+    assert_non_null(strstr(report.message, "traced with other rays"));
     checkpoint_clear(&checkpoint);
     /* the course fits, but not all sums are taken */
     struct hash *hash = hash_begin();

@@ -93,7 +93,7 @@ def test_what_a_campaign_without_a_folder_lacks_is_made_by_one_with_a_folder(cam
     scene = campaign_folder / "scene.yaml"
     scene.write_text(CAMPAIGN_SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
     whole = sonject.Campaign(campaign_folder / "campaign.yaml")
-    with pytest.raises(sonject.SonjectError, match="image 4: .*sonject campaign --only 4 -o FOLDER, and name "
+    with pytest.raises(sonject.SonjectError, match="image 4: .*sonject campaign --only 4 -o FOLDER, and name the file "
                                                    "FOLDER/calibrations/0.yaml") as caught:
         whole[4]
     assert "\n" not in str(caught.value)

@@ -295,7 +295,7 @@ def test_what_is_wrong_is_told(context):
     for match, elements, injection in (
         ("the window from 0.5 s to .* is empty", {"first_time": 0.5}, {}),
         ("more than 2\\^22", {"first_time": 0, "last_time": 30}, {}),
-        ("use connect for the element level", {},
+        ("use connect for elements", {},
          {"mode": "resynthesise", "estimator": "brute_force"}),
     ):
         with pytest.raises(sonject.SonjectError, match=match) as caught:

@@ -95,7 +95,7 @@ def test_the_log_tells_device_programs_and_noise_floor_and_progress_the_compilin
     lines = answer.stdout.splitlines()
     assert [line for line in lines if line.startswith("device '")] == lines[:1]
     assert any("trace_rough.cl built in" in line for line in lines)
-    assert lines[-1].startswith("no shadow of the patch tells the noise floor")
+    assert lines[-1].startswith("no shadow in the patch shows the noise floor")
 
 
 @pytest.mark.parametrize("log, is_printed", [
