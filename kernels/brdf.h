@@ -76,7 +76,7 @@ struct microfacet {
     vfloat half_angle; /* cosine between its normal and either direction */
 };
 
-/* Finds the facet between two directions. The half angle's cosine is half the length of their sum:
+/* Returns the facet between two directions. The half angle's cosine is half their sum's length:
  * near grazing a scalar product with the normal would cancel. */
 FUNCTION struct microfacet facet_between(struct vector3 one, struct vector3 other)
 {

@@ -141,8 +141,8 @@ FUNCTION vfloat specular_probability(GLOBAL const struct surface_record *surface
     return smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
 }
 
-/* Returns a step by the rough or smooth part of one surface. Seabed that the sonar sees sends rough
- * steps to targets. Later hits on seabed or sea surface also send some elsewhere. */
+/* Returns a step by the rough or smooth part of one surface. Rough steps from seabed or sea surface
+ * go to targets. If chains meet the sea surface, later hits also send some of these elsewhere. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
                                              const struct target_choice *targets,

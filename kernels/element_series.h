@@ -15,7 +15,7 @@ struct element_leg {
     vfloat slope;  /* sine of the aspect */
 };
 
-/* Finds the leg. `beyond` comes from the difference of squares: a difference of ranges would lose
+/* Returns the leg. `beyond` comes from the difference of squares: a difference of ranges would lose
  * the digits that the phase needs. */
 FUNCTION struct element_leg element_leg_of(float offset, vfloat processor_range)
 {

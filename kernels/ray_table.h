@@ -94,7 +94,7 @@ FUNCTION struct ray_to_point broadside_ray(struct ray_table_record table,
 #define RAY_SEARCH_STEPS 24
 #define RAY_NEAR_ENOUGH  1.0e-4f /* m beside the point; the range errs by its square over 2 r */
 
-/* Finds the ray through a point (y, z) of the strip's plane by Newton's iteration, guarded by
+/* Returns the ray through a point (y, z) of the strip's plane, by Newton's iteration guarded by
  * bisection. A larger elevation moves the point towards the ray's lower side. */
 FUNCTION struct ray_to_point find_ray_to(struct ray_table_record table,
                                          GLOBAL const struct ray_piece_record *pieces,

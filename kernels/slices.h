@@ -118,8 +118,8 @@ FUNCTION void meet_in_slice(const struct fan_record *fan,
     hit->squinted.direction = choose3(is_met, squinted->direction, hit->squinted.direction);
 }
 
-/* Finds the first object on each ray, from the straight water upwards. Ray and aspect are known in
- * the straight water; a hit in a higher slice comes earlier on the ray. */
+/* Returns the first object on each ray. The search goes upwards from the straight water, where ray
+ * and aspect are known. A hit in a higher slice comes earlier on the ray. */
 FUNCTION struct sliced_hit find_sliced_hit(const struct fan_record *fan,
                                            GLOBAL const struct ray_piece_record *pieces,
                                            GLOBAL const struct object_record *objects,

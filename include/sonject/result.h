@@ -143,7 +143,7 @@ typedef struct sonject_object_truth {
     double shadow_visibility_db;
     double highlight_clipped; /* share, 0...1, of the highlight's pixels that are as bright as the
                                  image, or the numbers in its file, can be; NaN: no highlight */
-    double ceiling_over_seabed_db; /* brightest level of the image over the local mean seabed where
+    double ceiling_over_seabed_db; /* brightest possible level over the local mean seabed where
                                       the echo is strongest; infinity: nothing is cut; NaN: no
                                       highlight */
 } sonject_object_truth;

@@ -47,7 +47,7 @@ FUNCTION void torus_slope(const struct torus_ray *ray, vfloat distance, vfloat *
     *bend = square - ray->radius * (ray->curving / (rho * rho * rho));
 }
 
-/* Finds where F/2, or its slope if is_slope, times `sense` falls through 0 between lower and upper.
+/* Returns where F/2, or with is_slope its slope, times `sense` falls through 0 in lower...upper.
  * Without a change of sign the result is lower or upper. A Newton step is taken if it stays between
  * the bounds and is at most half the step before, else the middle. A lane that has arrived rests,
  * so that no lane depends on others. */

@@ -91,10 +91,10 @@ struct image_match {
     double ceiling; /* the lesser of saturation and the file's largest amplitude */
 };
 
-/* Measures the patch's pixels around the placed objects. Pixels are in the view's row order. A
- * composite into a measured magnitude image may widen or narrow the tracer's response, if the scene
- * asks for that and the image clearly differs. Images that sonject made, and resynthesised ones,
- * keep the sonar's parameters. Errors: MEMORY. */
+/* Measures the patch's pixels around the placed objects. Pixels are in the view's row order, else
+ * as in the input. A composite into a measured magnitude image may widen or narrow the tracer's
+ * response, if the scene asks for that and the image clearly differs. Images that sonject made, and
+ * resynthesised ones, keep the sonar's parameters. Errors: MEMORY. */
 sonject_status match_image(struct tracer *tracer, const float *pixels,
                            const struct injection_input *input, struct image_match *match);
 

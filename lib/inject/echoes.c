@@ -107,7 +107,7 @@ struct forming {
     const struct echo_request *request;
     struct form_lines energies, field; /* for the set that comes in */
     struct object_former object;
-    float *beam_seabed; /* even seabed as pings hear it; planes of the patch's size */
+    float *beam_seabed; /* even seabed as pings hear it; a plane of the patch's size */
     struct line_grid chains_grid;
     float *chains; /* sum of all orders on the grid; NULL: none came in */
 };

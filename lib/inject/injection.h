@@ -148,7 +148,7 @@ sonject_status injection_setup_init_scene(struct injection_setup *setup, struct 
                                           struct device *device, const struct scene *scene,
                                           const struct injection_input *input);
 
-/* Lays the scene out, with the pixels. */
+/* Lays the scene out as injection_setup_init_scene does, with the pixels. */
 sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,
                                     struct device *device, const struct scene *scene,
                                     const struct injection_input *input);

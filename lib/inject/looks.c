@@ -339,7 +339,7 @@ static uint32_t stream_of(uint32_t look, uint32_t first_look, uint32_t which)
     return look == 0 ? first_look : STREAM_LOOKS + 3 * (look - 1) + which;
 }
 
-/* Returns the target's echo in a look. The first look has the traced realisation. The others have
+/* Finds the target's echo in a look. The first look has the traced realisation. The others have
  * the glints, and the rough part's energy drawn again. */
 static void target_in_look(const struct look_work *work, uint32_t look, size_t i, double *real_part,
                            double *imaginary_part)

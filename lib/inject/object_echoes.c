@@ -107,7 +107,7 @@ static double energy_at_point(const struct peak_lattice *lattice, bool is_field,
     return is_field ? a * a + b * b : a;
 }
 
-/* Returns the energy between a lattice's points, interpolated in both directions; 0 beyond them. */
+/* Returns the energy between a lattice's points, linear in both directions; 0 beyond the points. */
 static double energy_between(const struct peak_lattice *lattice, bool is_field, double row,
                              double column)
 {
@@ -157,7 +157,7 @@ static double peak_around(const struct echo_points *points, size_t row, size_t c
     return xx < 0.0 && curvature > 0.0 && rise < log(2.0) ? energy * exp(rise) : energy;
 }
 
-/* Finds the peak among points of `own` that have at least half of its energy. *peak only grows. */
+/* Finds the peak where `own` has at least half of the peak's energy. *peak only grows. */
 static void find_peak(const struct echo_points *points, double *peak, double *range_m)
 {
     const struct patch_view *view = &points->own->view;

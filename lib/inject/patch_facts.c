@@ -64,7 +64,7 @@ static size_t parts_of(size_t pixels)
 
 /* Estimates the noise floor from shadows of the patch. It is ambient and receiver noise, and the
  * side lobes and echoes by other paths that fill real shadows. NOISE_LOWEST is for clipped
- * pictures, which show too little. A large patch is searched in parts. */
+ * pictures, which show too little. A large patch is searched in parts all over it. */
 static sonject_status estimate_noise(struct patch_facts *facts, struct report *report,
                                      const struct patch_view *view, const float *pixels,
                                      bool is_complex)

@@ -17,9 +17,9 @@ struct influence_windows {
     size_t count;
 };
 
-/* Finds the windows of a composite. A window holds objects' echoes and shadows, as far as the point
- * response spreads them (glints' side lobes to -60 dB), seabed that exchanges sound with the
- * objects, and the pixels around from which truth is measured. Overlapping or close windows are
+/* Finds a composite's windows. Each object is in one. A window holds echoes and shadows as far as
+ * the point response spreads them (glints' side lobes to -60 dB), seabed that exchanges sound with
+ * the objects, and the pixels around from which truth is measured. Overlapping or close windows are
  * joined. There is one window, the patch, where all of it is traced: is_whole, a resynthesis, brute
  * force, relief, residual motion, or no object. Errors: MEMORY. */
 sonject_status influence_windows_find(struct influence_windows *windows,

@@ -111,7 +111,7 @@ struct profile_edge find_profile_end(const struct profile *profile, const struct
     return edge_believed(&belief);
 }
 
-/* Values between the entries are interpolated, which errs by 1e-5 of a sample. */
+/* Values between the entries are interpolated linearly, which errs by 1e-5 of a sample. */
 void step_levels_init(struct step_levels *levels, double before, double behind)
 {
     levels->inverse_behind = 1.0 / behind;
@@ -125,8 +125,7 @@ void step_levels_init(struct step_levels *levels, double before, double behind)
 }
 
 /* Returns the negative log likelihood, per sample, of a pixel's mean at less than REACH deviations
- * from the step, minus that of a pixel behind the step. The likelihood of m = p is not taken off,
- * so that profiles of other means can be compared. */
+ * from the step, minus that of a pixel behind the step. */
 static double cost_at_step(const struct step_levels *levels, double mean, double deviations)
 {
     const double at = (deviations + REACH) * (STEP_ENTRIES / (2.0 * REACH));
@@ -145,6 +144,7 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
     const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
     double settled_cost = 0.0; /* cost of pixels well before the step, minus that behind */
     size_t settled = 0;        /* number of these pixels */
+    /* costs are not relative to those of m = p, so that profiles of other means can be compared */
     double all_cost = (double)profile->count * levels->log_behind;
     for (size_t k = 0; k < profile->count; k++)
         all_cost += profile->means[k] * levels->inverse_behind;

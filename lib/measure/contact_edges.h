@@ -27,8 +27,8 @@ struct end_levels {
     double dark; /* most behind; side-lobe bias and the spread of the point response are added */
 };
 
-/* Finds where a profile that is lit at its first pixels becomes dark and stays dark. Lit pixels may
- * have any level above the least. */
+/* Returns where a profile that is lit at its first pixels becomes dark and stays dark. Lit pixels
+ * may have any level above the least. */
 struct profile_edge find_profile_end(const struct profile *profile,
                                      const struct end_levels *levels);
 
@@ -63,7 +63,7 @@ void weigh_profile_step(struct edge_posterior *belief, const struct profile *pro
  * its width, and with it how far out the parts lie, is weighed for all together. */
 struct profile_edge mean_step_believed(const struct edge_posterior *parts, size_t count);
 
-/* Finds where a first part of a profile ends that is brighter than the rest. Each has one level.
+/* Returns where a first part of a profile ends that is brighter than the rest. Each has one level.
  * lobe_bias is relative to that level. *gain gets the logarithm of the likelihood over that of one
  * level for all; 0: no first part is brighter. */
 struct profile_edge find_profile_change(const struct profile *profile, double *gain);

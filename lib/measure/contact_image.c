@@ -269,7 +269,7 @@ sonject_status find_seabed_level(const struct contact_image *image, struct repor
     return SONJECT_OK;
 }
 
-#define ROWS_BESIDE   8 /* above and below half a highlight's rows that may hold its shadow */
+#define ROWS_BESIDE   8 /* rows on either side of a highlight for its shadow, beside half its own */
 #define SHADOW_PIXELS 9 /* fewest pixels: one mean of 3 x 3 pixels may be dark by chance */
 #define COLUMNS_LEAST                                                                              \
     32 /* columns behind a highlight in which its shadow begins; twice its own if that is more */

@@ -197,7 +197,7 @@ static sonject_status contact_measure(struct report *report, struct contact_imag
     return SONJECT_OK;
 }
 
-/* Measures how well each contact is seen, once all are known: none is seabed. Errors: MEMORY. */
+/* Measures how well each contact is seen. All are known by then: none is seabed. Errors: MEMORY. */
 static sonject_status contacts_add_visibility(struct report *report,
                                               const struct contact_image *image,
                                               sonject_contact_measures *measures, size_t count)
@@ -213,7 +213,7 @@ static sonject_status contacts_add_visibility(struct report *report,
     return SONJECT_OK;
 }
 
-/* Adds the seabed's speckle to each contact. No contact takes seabed. Errors: MEMORY. */
+/* Tells each contact the speckle of the seabed outside all contacts so far. Errors: MEMORY. */
 static sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
                                           sonject_contact_measures *measures, size_t count)
 {

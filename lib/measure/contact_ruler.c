@@ -6,7 +6,7 @@
  *   over the sum of the correlation: sqrt(pi) times the length at which a Gaussian falls to 1/e.
  * - An edge is the mean of its likelihood, and the deviation is its error (contact_edges.h).
  * - The point response: speckle's correlation is the square of its amplitude's autocorrelation. The
- *   energy of a Gaussian then has half the deviation of the length at which that falls to 1/e.
+ *   deviation of a Gaussian's energy is then half the length at which that correlation is 1/e.
  *   Other responses are taken for Gaussian. 1/(2 pi^2 x^2) is the mean of sinc^2 over a side lobe.
  * - A shadow has two levels if those are e^10 times as likely as one. By chance that happens in one
  *   of some 200 shadows of 100 pixels.

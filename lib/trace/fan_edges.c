@@ -72,7 +72,7 @@ sonject_status fan_edges_init(struct fan_edges *edges, struct fan_record *fan,
     const struct patch_view *view = &tracer->view;
     const double per_pixel = grid->bins_per_pixel;
     const double offset = (double)view->first_column * per_pixel; /* bin numbers are the patch's */
-    const double end = grid->bins.first + grid->bins.count + 1.0; /* echoes spill into the next */
+    const double end = grid->bins.first + grid->bins.count + 1.0; /* the next shares with these */
     const double nearest = fmax(nearest_m, view_bottom_range(view));
     struct laying laying = {.edges = edges, .tracer = tracer};
     double origin[3];

@@ -26,8 +26,8 @@ static double gain_of(const sonject_fouling_params *fouling)
     return sqrt(2.0 / WAVES) * fouling->albedo_db * log(10.0) / 10.0;
 }
 
-/* Returns the albedo where all crests meet. I0(x), the mean of exp(x cos) over a cycle, is a wave's
- * factor in the mean. */
+/* Returns the albedo over its mean where all crests meet. I0(x), the mean of exp(x cos) over a
+ * cycle, is a wave's factor in the mean. */
 static double peak_of(const sonject_fouling_params *fouling)
 {
     const double gain = gain_of(fouling);

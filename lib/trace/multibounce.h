@@ -15,7 +15,7 @@
 struct multibounce_sums {
     struct line_grid grid;
     size_t rows, columns; /* tiles of the grid */
-    int64_t **tiles; /* owned; NULL: no echo; else in quanta, TILE_STRIPS x TILE_BINS x 2 parts */
+    int64_t **tiles; /* owned; NULL: none; quanta, TILE_STRIPS x TILE_BINS x (real, imaginary) */
     double amplitude_of_quantum; /* m */
 };
 

@@ -80,7 +80,7 @@ sonject_status object_tree_build(const struct tracer *tracer, const struct objec
 struct target_spheres {
     struct sphere_record *records; /* owned; spheres, groups, spheres around groups */
     uint32_t count, groups;        /* groups 0: few spheres */
-    size_t bytes;                  /* size of spheres and groups */
+    size_t bytes;                  /* size of all that is filled in so far */
 };
 
 /* Covers every part with a row of spheres along its length. A row has about as many spheres as the

@@ -140,7 +140,7 @@ struct sums_chain {
     bool is_complete;
 };
 
-/* Finds a shard's chain of checkpoints. chain->files is the caller's, also on failure. Errors:
+/* Finds a shard's chain of checkpoints. chain->files is for free(), also on failure. Errors:
  * MEMORY. */
 sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
                                const struct sums_folder *folder, uint64_t shard);
