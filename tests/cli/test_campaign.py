@@ -941,7 +941,7 @@ def test_a_row_of_a_table_is_drawn_whole(ground, command):
     ("width,", "length,", "bodies.csv:2:18: length", "two columns"),
     ("heading,", "class,", "bodies.csv:2:36: class", "the campaign itself sets class"),
     ("heading,", "burial,", "targets[0].draw.burial", "is a column of the table, too"),
-    ("[cm]", "[cm", "bodies.csv:2:24: height", "no ]"),
+    ("[cm]", "[cm", "bodies.csv:2:24: height", "without a closing ]"),
     ("30 deg,2", "30 deg,-2", "bodies.csv:4:31: count", "'-2' is not a number"),
     ("count", "name", "bodies.csv:2:1: count", "no column has this name"),
     (",1 #", " #", "bodies.csv:5: ", "has 5 columns, but 6"),

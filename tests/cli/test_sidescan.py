@@ -184,7 +184,7 @@ def test_what_may_not_begin_in_the_water_column_says_why(sonject, tmp_path, line
     patch = "{row: 10, column: 10, rows: 40, columns: 170}"
     answer = sonject("check", write_scene(tmp_path, patch=patch, more=more))
     assert_refused(answer, 3, "scene.yaml:2:", words)
-    column = int(answer.stderr.split("begin with column ")[1].split(",")[0])
+    column = int(answer.stderr.split("begin the patch at column ")[1].split(",")[0])
     patch = patch.replace("column: 10", f"column: {column}").replace("columns: 170", "columns: 140")
     sonject.done("check", write_scene(tmp_path, patch=patch, more=more))
 
