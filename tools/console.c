@@ -92,6 +92,10 @@ void stop_watch(void)
 
 int stop_is_asked(void)
 {
+    /* LLVM, which OpenCL drivers load, puts its handlers in place of these. The first signal undoes
+     * them, and a second one in that moment would end the command. */
+    if (!signal_that_came)
+        stop_watch();
     return signal_that_came != 0;
 }
 

@@ -133,7 +133,7 @@ static sonject_status take_layout(struct report *report, struct jpeg_image *imag
 static bool take_quality(struct jpeg_image *image, int *nearest)
 {
     const JQUANT_TBL *table = image->jpeg.quant_tbl_ptrs[image->jpeg.comp_info->quant_tbl_no];
-    double least = QUALITY_DIFFERENCE * DCTSIZE2;
+    volatile double least = QUALITY_DIFFERENCE * DCTSIZE2; /* setjmp would leave others unknown */
     *nearest = JPEG_QUALITY_UNTOLD;
     image->scaled.err = image->jpeg.err;
     if (setjmp(image->listener.back) != 0)

@@ -372,6 +372,21 @@ def test_signals_stop_a_run(scene, tmp_path, environment, number, code, words):
     assert kept.parent.name == "work" and kept.suffix == ".sums"
 
 
+@pytest.mark.parametrize("attempt", range(3))
+def test_signals_that_follow_each_other_at_once_stop_a_run(scene, tmp_path, environment, attempt):
+    """Also with OpenCL's libraries in the process, which the search for a GPU loads."""
+    variables = {name: value for name, value in environment.items() if name != "SONJECT_DEVICE"}
+    process = subprocess.Popen([COMMAND, "run", scene, "-o", "result", "--checkpoint", "1e-9", *SLOW], cwd=tmp_path, env=variables,
+                               text=True, stderr=subprocess.PIPE)
+    while process.poll() is None and not files_below(tmp_path / "result"):
+        time.sleep(0.01)
+    for _ in range(1000):
+        process.send_signal(signal.SIGTERM)
+    said = process.communicate()[1]
+    assert process.returncode == 85, said
+    assert said.endswith("sonject: stopped; run the same command again\n")
+
+
 def test_seabed_and_quicklook_belong_together(sonject, tmp_path):
     for name, seed in (("a", 1), ("b", 1), ("c", 2)):
         made = sonject.done("seabed", "-o", f"{name}.tif", "--rows=16", "--columns=20", "--seed", seed)
