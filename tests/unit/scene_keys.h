@@ -31,7 +31,7 @@ static const char file[] = "sonject: 1\ninput:\n  path: swath.tif\n  " GEOMETRY 
 /* The scene of a key (the small one where text is NULL), and what else the key's section then
  * needs. A key takes the first row whose path its own path begins with. */
 #define RELIEF(feature) "seabed.relief=[{" feature "}]"
-#define HEIGHTS         SOURCE_ROOT "/tests/unit/heights.png"
+#define HEIGHTS         SOURCE_ROOT "/tests/unit/heights.npy"
 #define ARRAYS          SOURCE_ROOT "/tests/unit/heights.mat" /* two arrays of 2 x 3 bytes */
 #define H_GRID          "row_spacing: 1, column_spacing: 1, first_ground_range: 30"
 #define A_MOUND         "radius: 1 m, height: 10 cm"

@@ -128,7 +128,8 @@ TEST(test_each_work_item_runs_once_beside_other_hosts)
         assert_true(are_right[i]);
 }
 
-#ifndef IS_SANITIZED /* sanitizers' own locks do not survive the fork */
+/* Locks of sanitizers, and of QEMU, do not survive the fork. */
+#if !defined IS_SANITIZED && !defined IS_EMULATED
 /* Lets two work-items wait for each other, and so for a second thread. */
 static void meet(const struct kernel_argument *arguments, const size_t *global, size_t first,
                  size_t end)
