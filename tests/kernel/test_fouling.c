@@ -180,7 +180,6 @@ TEST(test_the_field_is_the_objects)
     sonject_object_params *object = bench_add(&bench, SHAPE_PARTS, 0.0, 0.0, 0.0);
     object->heading_rad = 0.8;
     object->roll_rad = 0.4;
-    object->fouling = (sonject_fouling_params){6.0, 0.2, 0.005, 0.05};
     for (int i = 0; i < 2; i++) {
         struct scene_part part = {.object = 0};
         object_init(&part.shape);
@@ -190,8 +189,9 @@ TEST(test_the_field_is_the_objects)
         turn_axes(part.axes, 0.5 * i, 0.2 * i, 0.0);
         EXPECT_OK(&bench.report, scene_append_part(&bench.scene, &bench.report, &part));
     }
-    bench_add(&bench, SHAPE_SPHERE, 0.0, 0.0, 0.3)->fouling = object->fouling;
-    bench.scene.objects[0].fouling = bench.scene.objects[1].fouling = object->fouling;
+    bench_add(&bench, SHAPE_SPHERE, 0.0, 0.0, 0.3); /* may move the objects */
+    for (int i = 0; i < 2; i++)
+        bench.scene.objects[i].fouling = (sonject_fouling_params){6.0, 0.2, 0.005, 0.05};
     bench_ready(&bench);
     lay(&parts[0], &bench, 0, 7);
     lay(&parts[1], &bench, 1, 7);
