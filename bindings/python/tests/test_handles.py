@@ -111,9 +111,9 @@ def test_notes_are_printed_unless_a_log_takes_them(log, is_printed, tmp_path):
         "    scene['injection.noise_floor'] = '-25 dB'\n"
         "    patch = numpy.random.default_rng(1).rayleigh(50, size=(96, 128)).astype(numpy.uint8)\n"
         "    sonject.inject(patch, scene, transfer='{kind: amplitude}')\n"
-        f"    numpy.save('{tmp_path}/swath.npy', patch)\n"
-        f"    scene['input.path'] = '{tmp_path}/swath.npy'\n"
-        f"    sonject.run(scene, '{tmp_path}/out')\n"
+        f"    numpy.save('{tmp_path.as_posix()}/swath.npy', patch)\n"
+        f"    scene['input.path'] = '{tmp_path.as_posix()}/swath.npy'\n"
+        f"    sonject.run(scene, '{tmp_path.as_posix()}/out')\n"
     )
     assert answer.returncode == 0, answer.stderr
     lines = answer.stderr.splitlines()
@@ -139,7 +139,7 @@ def test_a_missing_library_is_explained():
 def test_the_module_is_the_command_of_a_wheel():
     """A package that was not installed lacks the command, and says so in a line."""
     answer = run_python("import runpy, sys\nsys.argv = ['sonject', '--version']\nrunpy.run_module('sonject', run_name='__main__')")
-    if (PACKAGE / "sonject").exists():
+    if (PACKAGE / "sonject").exists() or (PACKAGE / "sonject.exe").exists():
         assert (answer.returncode, answer.stdout) == (0, f"sonject {sonject.__version__}\n")
     else:
         assert answer.returncode == 1 and answer.stderr.count("\n") == 1

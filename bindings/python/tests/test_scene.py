@@ -3,6 +3,7 @@
 import copy
 import math
 import os
+import pathlib
 import pickle
 
 import numpy
@@ -217,7 +218,7 @@ def test_a_scene_is_written_for_other_folders(tmp_path, context, amplitude_patch
     monkeypatch.chdir("/")
     for other in (sonject.Scene.read(written, context=context), pickle.loads(pickled)):
         assert image(amplitude_patch, other) == before
-        assert other["objects[1].mesh.file"] == str(tmp_path / "here" / "a.obj")
+        assert pathlib.Path(other["objects[1].mesh.file"]) == tmp_path / "here" / "a.obj"
     assert [path.name for path in written.parent.iterdir()] == ["scene.yaml"]
 
 
