@@ -440,8 +440,8 @@ CLAIM(far_edges_return_what_is_left_of_the_face)
         }
 }
 
-/* The residual where a smooth convex body returns nothing is -78 dB re 1 m^2. A pixel of seabed at
- * -27 dB lies at -73. */
+/* The residual where a smooth convex body returns nothing is -76 dB re 1 m^2, and -78 with four times
+ * the rays. A pixel of seabed at -27 dB lies at -73. */
 CLAIM(little_is_left_beside_a_glint)
 {
     static const double scales[] = {1.0, 4.0};
@@ -462,7 +462,7 @@ CLAIM(little_is_left_beside_a_glint)
         print_message("%.0f times the rays: ", scales[i]);
         expect_below("residual, dB re 1 m^2",
                      decibels_of_energy(sum / (29.0 * (double)(last - first + 1))),
-                     scales[i] > 1.0 ? -70.0 : -64.0);
+                     scales[i] > 1.0 ? -77.0 : -75.0);
     }
 }
 
