@@ -5,7 +5,18 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "base/units.h"
 #include "console.h"
+
+/* The names of values that have units. Other numbers have none. */
+static const struct {
+    const char *value;
+    enum quantity quantity;
+} quantities[] = {{"M", QUANTITY_LENGTH},
+                  {"HZ", QUANTITY_FREQUENCY},
+                  {"DEG", QUANTITY_ANGLE},
+                  {"DB", QUANTITY_DECIBEL},
+                  {"SECONDS", QUANTITY_TIME}};
 
 bool number_parse(const char *text, double *value)
 {
@@ -70,9 +81,14 @@ static bool set_number(const struct verb *verb, const struct argument *argument,
 {
     if (number->is_given)
         return refuse_repeated(verb, argument);
-    if (!number_parse(text, &number->value)) {
-        message(verb->name, ": ", argument->name,
-                " takes a number in SI units without a unit, not \"", text, "\"");
+    enum quantity quantity = QUANTITY_NUMBER;
+    for (size_t i = 0; i < sizeof(quantities) / sizeof(quantities[0]); i++)
+        if (strcmp(quantities[i].value, argument->value) == 0)
+            quantity = quantities[i].quantity;
+    char problem[160] = "must be finite";
+    if (!quantity_from_text(quantity, text, &number->value, problem, sizeof(problem)) ||
+        !isfinite(number->value)) {
+        message(verb->name, ": ", argument->name, " \"", text, "\": ", problem);
         return false;
     }
     number->is_given = true;

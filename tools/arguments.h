@@ -12,7 +12,7 @@ enum argument_kind {
     ARGUMENT_FLAG,   /* no value; bool */
     ARGUMENT_TEXT,   /* const char *, NULL: not given */
     ARGUMENT_TEXTS,  /* may be repeated; struct text_list */
-    ARGUMENT_NUMBER, /* finite; struct number_argument */
+    ARGUMENT_NUMBER, /* finite, in SI units and radians; struct number_argument */
     ARGUMENT_WHOLE   /* digits; struct whole_argument */
 };
 
@@ -34,7 +34,8 @@ struct whole_argument {
 struct argument {
     const char *name;       /* "--seed" */
     const char *short_name; /* "-o" or NULL */
-    const char *value;      /* the value's name in the help; NULL for flags */
+    const char *value;      /* the value's name in the help, which tells its unit: M, HZ, DEG, DB,
+                               SECONDS; NULL for flags */
     const char *help;
     enum argument_kind kind;
     bool is_required;

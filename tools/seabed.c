@@ -59,15 +59,11 @@ static const struct argument arguments[] = {
     {option, NULL, unit, help, ARGUMENT_NUMBER, false, MEMBER(member)},
     NUMBERS(NUMBER_ARGUMENT)};
 
-/* Sets a number. Degrees are set as radians, to keep the last bit. */
 static sonject_status set_number(sonject_scene *scene, const char *key, const char *unit,
                                  const struct number_argument *number)
 {
     char text[48];
-    const bool is_angle = strcmp(unit, "DEG") == 0;
-    snprintf(text, sizeof(text), "%.17g%s",
-             number->value * (is_angle ? 3.14159265358979323846 / 180 : 1.0),
-             is_angle ? " rad" : "");
+    snprintf(text, sizeof(text), "%.17g%s", number->value, strcmp(unit, "DEG") == 0 ? " rad" : "");
     return number->is_given ? sonject_scene_set(scene, key, text) : SONJECT_OK;
 }
 

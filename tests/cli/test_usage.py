@@ -117,7 +117,8 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["devices", "all"], ['"all"']),
         (["seabed"], ["-o IMAGE is missing"]),
         (["seabed", "-o", "x.tif", "--rows", "4294967297"], ["--rows"]),
-        (["seabed", "-o", "x.tif", "--altitude", "10 m"], ["--altitude", "10 m"]),
+        (["seabed", "-o", "x.tif", "--altitude", "10 kg"], ["--altitude", "unit 'kg' is not one of m, km"]),
+        (["seabed", "-o", "x.tif", "--ripple-contrast", "1 m"], ["--ripple-contrast", "no unit"]),
         (["seabed", "-o", "x.tif", "--altitude", "nan"], ["--altitude", "nan"]),
         (["seabed", "-o", "x.tif", "--altitude", "0x10"], ["--altitude"]),
         (["seabed", "-o", "x.tif", "--altitude", "1e999"], ["--altitude"]),
@@ -138,6 +139,13 @@ def test_nothing_asked_is_a_usage_error(sonject):
 def test_wrong_usage_is_one_line(sonject, tmp_path, arguments, words):
     assert_refused(sonject(*arguments), 2, *words)
     assert not list(tmp_path.iterdir())
+
+
+def test_numbers_take_units(sonject, tmp_path):
+    for name, numbers in (("plain", (0.05, 9.5, 100e3, 30)), ("units", ("5 cm", "9500mm", "100 kHz", "30 deg"))):
+        sonject.done("seabed", "-o", f"{name}.tif", "--rows=8", "--columns=8", "--ripple-contrast=0.5", *sum(zip(
+            ("--row-spacing", "--altitude", "--frequency", "--ripple-heading"), numbers), ()))
+    assert (tmp_path / "plain.tif").read_bytes() == (tmp_path / "units.tif").read_bytes()
 
 
 def test_messages_stay_one_line_whatever_the_names(sonject):
