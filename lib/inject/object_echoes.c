@@ -80,14 +80,12 @@ static sonject_status peak_lattice_begin(struct peak_lattice *lattice, struct tr
 /* Adds the formed lines to the planes. */
 static sonject_status peak_lattice_finish(struct peak_lattice *lattice)
 {
-    const size_t width = lattice->view.columns;
     struct formed formed;
     const sonject_status status = form_end(&lattice->lines, &formed);
-    for (size_t i = 0; status == SONJECT_OK && i < 2 * formed.count; i++) {
-        const size_t at = i % formed.count;
-        lattice->planes[i / formed.count * lattice->view.rows * width +
-                        at / formed.columns * width + formed.first_column + at % formed.columns] +=
-            formed.planes[i];
+    for (size_t row = 0; status == SONJECT_OK && row < 2 * lattice->view.rows; row++) {
+        float *to = lattice->planes + row * lattice->view.columns + formed.first_column;
+        for (size_t column = 0; column < formed.columns; column++)
+            to[column] += formed.planes[row * formed.columns + column];
     }
     free(formed.planes);
     return status;

@@ -129,7 +129,7 @@ void step_levels_init(struct step_levels *levels, double before, double behind)
 static double cost_at_step(const struct step_levels *levels, double mean, double deviations)
 {
     const double at = (deviations + REACH) * (STEP_ENTRIES / (2.0 * REACH));
-    const int i = (int)fmin(at, STEP_ENTRIES - 1.0);
+    const int i = at < STEP_ENTRIES - 1.0 ? (int)at : STEP_ENTRIES - 1;
     const double later = at - i;
     return mean * (levels->inverse[i] + later * (levels->inverse[i + 1] - levels->inverse[i]) -
                    levels->inverse_behind) +
