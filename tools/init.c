@@ -215,6 +215,7 @@ static sonject_status learn(struct interview *interview, char **text)
     interview->altitude_m = measured(*text, "altitude");
     interview->recorded_altitude_m = measured(*text, "recorded_altitude");
     interview->full_scale = measured(*text, "full_scale");
+    interview->largest_number = measured(*text, "largest_number");
     interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
     interview->plain_row = placed(*text, "row");
     interview->plain_column = placed(*text, "column");

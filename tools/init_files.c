@@ -272,11 +272,11 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
             (checked.last_m - checked.first_m) / (checked.columns - 1.0));
 }
 
-/* Adds grey levels for detectors, which read 8 bits: from well below shadows to the ceiling of a
- * recording's 16 bits. */
+/* Adds grey levels for detectors, which read 8 bits: from well below shadows to a recording's
+ * ceiling. */
 static void add_grey(FILE *file, const struct interview *interview)
 {
-    const double white = 20.0 * log10(interview->full_scale / 65535.0);
+    const double white = 20.0 * log10(interview->full_scale / interview->largest_number);
     const double black = white - interview->ceiling_over_seabed_db - SHADOWS_DB;
     if (*interview->other_calibration && interview->full_scale > 255.0 && isfinite(black))
         fprintf(file,

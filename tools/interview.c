@@ -185,8 +185,11 @@ static bool ask(struct interview *interview, const struct question *question)
             return true;
         }
         interview->count--;
-        if (*value)
-            (void)fail_with(interview->context, SONJECT_ERROR_INPUT);
+        if (*value) {
+            const char *problem = sonject_context_message(interview->context);
+            const char *rest = strstr(problem, ": ");
+            message("init: the answer '", value, "': ", rest ? rest + 2 : problem);
+        }
     }
 }
 

@@ -38,7 +38,7 @@ struct interview {
     bool is_reversed; /* range grows to the left, as answered */
     bool has_returns; /* first returns were found, which give the altitude */
     double columns, nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
-        full_scale, ceiling_over_seabed_db, plain_row, plain_column;
+        full_scale, largest_number, ceiling_over_seabed_db, plain_row, plain_column;
     bool assumes_bandwidth; /* the answer is the bandwidth of the column spacing */
 };
 

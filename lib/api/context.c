@@ -36,6 +36,7 @@ sonject_status context_begin_call(struct sonject_context *context)
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context->report.message[0] = '\0';
+    context->report.input_count = 0;
     context->host.progress = NULL;
     return SONJECT_OK;
 }

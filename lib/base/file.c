@@ -115,8 +115,37 @@ void folder_tidy(const char *path)
     (void)folder_hear_names(path, tidy_name, (void *)path);
 }
 
+void file_protect(struct report *report, const char *path)
+{
+    struct path_facts facts;
+    if (path_facts_read(path, &facts) != 0)
+        return;
+    const size_t place = report->input_count++ % INPUTS_KEPT;
+    report->inputs[place].device = facts.device;
+    report->inputs[place].number = facts.number;
+}
+
+sonject_status file_check_replaced(struct report *report, const char *path)
+{
+    struct path_facts facts;
+    if (report->input_count == 0 || path_facts_read(path, &facts) != 0)
+        return SONJECT_OK;
+    for (size_t i = 0; i < report->input_count && i < INPUTS_KEPT; i++)
+        if (report->inputs[i].device == facts.device && report->inputs[i].number == facts.number)
+            return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                                  "%s: is the image that was read, and no result replaces it: "
+                                  "choose another name or folder",
+                                  path);
+    return SONJECT_OK;
+}
+
 sonject_status file_publish(struct report *report, const char *part, const char *path)
 {
+    const sonject_status status = file_check_replaced(report, path);
+    if (status != SONJECT_OK) {
+        file_discard(part);
+        return status;
+    }
     const int error = file_replace(part, path);
     if (error == 0)
         return SONJECT_OK;

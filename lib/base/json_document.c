@@ -227,7 +227,7 @@ static json_int_t whole_of(const json_t *entry, const char *key)
 sonject_status file_entry_holds(struct report *report, const json_t *entry, const char *path,
                                 bool hashes_all, bool *holds)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     struct path_facts identity;
     char hash[HASH_TEXT_CAPACITY];
     const char *expected = json_string_value(json_object_get(entry, "xxh3"));

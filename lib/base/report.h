@@ -4,6 +4,7 @@
 #define SONJECT_BASE_REPORT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include <sonject/context.h>
@@ -19,6 +20,7 @@
 
 #define REPORT_LINE     1024 /* bytes of a line */
 #define REPORT_CAPACITY 8192
+#define INPUTS_KEPT     64 /* images that a call remembers to have read */
 
 struct decoder;
 
@@ -37,6 +39,11 @@ struct report {
     char message[REPORT_CAPACITY];  /* "" if nothing failed; one line, or a line for each mistake */
     sonject_log_function log;       /* may be NULL */
     const struct report_host *host; /* NULL: no progress, and a decoder for each file */
+    /* Images that the call has read. file_publish does not replace them (file_protect). */
+    struct {
+        uint64_t device, number;
+    } inputs[INPUTS_KEPT];
+    size_t input_count;
 };
 
 #if defined(__GNUC__)

@@ -53,8 +53,11 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
     sonject_geometry_params geometry = scene->geometry;
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
-    if (scene->has_files_geometry) /* take the geometry of all rows, as the file's picture does */
-        (void)geometry_notes_to_params(&noted, &geometry);
+    const bool tells = geometry_notes_to_params(&noted, &geometry);
+    if (tells && !scene->has_files_geometry) {
+        tell_other_geometry(campaign->report, swath->path, &geometry, &scene->geometry);
+        geometry = scene->geometry; /* else that of all rows, as the file's picture has */
+    }
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
     row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);
@@ -93,6 +96,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         return tree_failure(&campaign->campaign.tree, swath->place, "swaths",
                             "there is no %s that can be read; check its name", swath->path);
     status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0, 0, NULL);
+    file_protect(campaign->report, swath->path);
     THEN(status, swath_file_open_array(campaign->report, swath->path, trial.scene.channel,
                                        trial.scene.array, &file));
     if (status == SONJECT_OK) {

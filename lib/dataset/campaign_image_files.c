@@ -88,7 +88,8 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     struct raster_layout layout = swath->layout;
     const char *const *names = swath->is_complex ? complex_names : NULL;
     if (is_grey(campaign)) {
-        attributes[count++] = raster_make_grey(&layout, stored, campaign->campaign.grey_db, ends);
+        attributes[count++] = raster_make_grey(campaign->report, &layout, stored, swath->full_scale,
+                                               campaign->campaign.grey_db, ends);
         names = NULL;
     }
     const sonject_status status =

@@ -408,8 +408,8 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
     uint64_t top = 0, height = plan->layout.rows, first, width;
     if (!geometry_side(geometry, plan->layout.columns, &first, &width))
         return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "nadir_column %g leaves none of the %llu columns of %s to its side: "
-                            "correct it, or the side",
+                            "nadir_column %g does not lie among the %llu columns of %s with some "
+                            "to its side: correct it, or the side",
                             geometry->nadir_column, (unsigned long long)plan->layout.columns,
                             plan->written);
     /* chips of a JPEG begin where a block does, so that blocks coded once are coded alike again */

@@ -100,6 +100,16 @@ static bool is_label(const char *name)
     return false;
 }
 
+static bool is_of_two_sides(struct report *report, const char *path)
+{
+    struct swath_file *file = NULL;
+    const bool is =
+        swath_file_open_array(report, path, SONJECT_CHANNEL_PORT, NULL, &file) == SONJECT_OK &&
+        swath_file_recording(file);
+    swath_file_close(&file);
+    return is;
+}
+
 /* Opens the image whose name before the extension is that of its labels, for its size. place: of
  * the labels, for messages. */
 static sonject_status find_image(struct yolo *yolo, const char *place, const char *label,
@@ -127,6 +137,11 @@ static sonject_status find_image(struct yolo *yolo, const char *place, const cha
             char *path = path_join(reader->folders[k], name);
             CHECK_MEMORY(reader->report, path, "contacts");
             status = swath_file_open_array(reader->report, path, SONJECT_CHANNEL_ONLY, NULL, &file);
+            if (status == SONJECT_ERROR_INPUT && is_of_two_sides(reader->report, path))
+                status = input_failure(reader->report, place,
+                                       "the recording has two sides, and the label does not say "
+                                       "which: list contacts in a .csv table with a column side, "
+                                       "port or starboard");
             free(path);
             if (status == SONJECT_ERROR_INPUT || status == SONJECT_ERROR_UNSUPPORTED)
                 continue; /* not an image; the message counts if no other file is one */

@@ -76,7 +76,7 @@ static sonject_status tidy(struct report *report, const char *path)
 
 static void discard(const char *folder, const char *name)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     char path[PATH_CAPACITY];
     if (path_in(&ignored, path, folder, "%s", name) == SONJECT_OK)
         file_discard(path);
@@ -85,7 +85,7 @@ static void discard(const char *folder, const char *name)
 /* Removes the images and documents, campaign.json last. */
 static void remove_all(const struct data_set *set)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     char path[PATH_CAPACITY];
     const char *documents[DOCUMENTS];
     discard(set->folder, LAST_FILE);
@@ -521,7 +521,7 @@ static sonject_status write_last(const struct data_set *set)
 
 sonject_status data_set_finish(struct data_set *set)
 {
-    struct report silent = {{0}, NULL, NULL};
+    struct report silent = {.host = NULL};
     char path[PATH_CAPACITY];
     CHECK(check_complete(set));
     for (size_t i = 0; i < set->split_count; i++)

@@ -26,7 +26,7 @@ sonject_status earlier_document(struct report *report, const char *folder, const
 
 static bool has_document(const char *folder, const char *name)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     char path[PATH_CAPACITY];
     return path_in(&ignored, path, folder, "%s", name) == SONJECT_OK && file_exists(path);
 }
@@ -150,7 +150,7 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
 
 json_t *earlier_withdraw(const char *folder, const char *document)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     json_t *earlier = NULL;
     earlier_document(&ignored, folder, document, &earlier);
     json_t *files = json_incref(json_object_get(earlier, "files"));

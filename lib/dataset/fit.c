@@ -218,18 +218,34 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
     return status;
 }
 
-/* Opens the first round, without limits on ranges where the swaths do not reach the contacts'. */
+/* Opens the first round. Where some swath does not reach the contacts' ranges, only the swaths that
+ * show contacts keep their limits; where these do not reach either, none does. */
 static sonject_status open_first(struct fit *fit, struct sonject_campaign **opened)
 {
+    static const char *const notes[] = {
+        "some swath does not reach the contacts' ratios of range to altitude, so only images of "
+        "swaths that show contacts are limited to them",
+        "the campaign's swaths do not reach the contacts' ratios of range to altitude, so images "
+        "stay in the same places"};
     sonject_status status = open_round(fit, 0, opened);
-    if (status != SONJECT_ERROR_INPUT || !(fit->selection.chip.least > 0.0))
+    if (!(fit->selection.chip.least > 0.0))
         return status;
-    fit->selection.chip = (struct ratio_limits){0.0, 0.0};
-    free(fit->selection.swaths);
-    fit->selection.swaths = NULL;
-    growing_text_add(&fit->notes, "the campaign's swaths do not reach the contacts' ratios of "
-                                  "range to altitude, so images stay in the same places\n");
-    return open_round(fit, 0, opened);
+    bool is_by_swath = false;
+    for (size_t i = 0; i < fit->campaign->campaign.swath_count; i++)
+        is_by_swath |= fit->selection.swaths[i].least > 0.0;
+    for (size_t i = is_by_swath ? 0 : 1; i < COUNT(notes) && status == SONJECT_ERROR_INPUT; i++) {
+        fit->selection.chip = (struct ratio_limits){0.0, 0.0};
+        if (i > 0) {
+            free(fit->selection.swaths);
+            fit->selection.swaths = NULL;
+        }
+        status = open_round(fit, 0, opened);
+        if (status == SONJECT_OK) {
+            report_note(fit->report, "%s", notes[i]);
+            growing_text_add(&fit->notes, "%s\n", notes[i]);
+        }
+    }
+    return status;
 }
 
 /* Keeps the drawn values of a contact. A height that is not observed is kept constant, so that a

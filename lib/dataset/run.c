@@ -13,6 +13,7 @@
 #include "base/system/process.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
+#include "swath/geometry_notes.h"
 
 /* Fractions of a run's progress at which tracing and writing start. */
 #define TRACE_START 0.1
@@ -85,8 +86,10 @@ static void tell_altitudes(struct report *report, const struct scene *scene)
                     scene->altitudes_m[0], scene->altitudes_m[1], scene->sonar.altitude_m);
 }
 
-void tell_scene(struct report *report, const struct scene *scene)
+void tell_scene(struct report *report, const struct scene *scene, const struct swath *swath)
 {
+    if (swath->tells_geometry && !scene->has_files_geometry)
+        tell_other_geometry(report, scene->input_path, &swath->files_geometry, &scene->geometry);
     tell_sediment(report, scene);
     tell_altitudes(report, scene);
     tell_calibration_doubts(report, scene);
@@ -100,6 +103,8 @@ static void tell_seen(struct report *report, const struct scene *scene,
         const sonject_object_truth *truth = &result->objects[i];
         const double highlight_db = truth->highlight_visibility_db;
         const double shadow_db = truth->shadow_visibility_db;
+        const bool is_cut = truth->highlight_clipped > CLIPPED_MUCH;
+        const bool is_drowned = highlight_db < STANDS_OUT_DB;
         if (!truth->is_visible)
             report_note(report, "nothing of '%s' is in view", scene->objects[i].name);
         else if (!(isnan(highlight_db) && isnan(shadow_db)) && !(highlight_db > 0.0) &&
@@ -108,17 +113,21 @@ static void tell_seen(struct report *report, const struct scene *scene,
                         "'%s' cannot be seen: neither its highlight nor its shadow stands out from "
                         "the seabed; raise objects[].level, or check seabed.lambert",
                         scene->objects[i].name);
-        else if (highlight_db < 0.0)
+        else if (is_drowned && is_cut)
+            report_note(report,
+                        "no highlight of '%s' can stand out: the seabed there is %.1f dB below the "
+                        "image's ceiling; choose a darker place",
+                        scene->objects[i].name, truth->ceiling_over_seabed_db);
+        else if (is_drowned)
             report_note(report,
                         "the highlight of '%s' does not stand out from the seabed: raise "
                         "objects[].level, or choose a darker place",
                         scene->objects[i].name);
-        if (truth->highlight_clipped > CLIPPED_MUCH)
+        if (is_cut && !is_drowned)
             report_note(
                 report,
-                "%.0f %% of the highlight of '%s' is cut at the image's ceiling, %.1f dB "
-                "over "
-                "the seabed there: objects[].level of {over_seabed: %.0f dB} would leave room",
+                "%.0f %% of the highlight of '%s' is cut at the image's ceiling, %.1f dB over the "
+                "seabed there: objects[].level of {over_seabed: %.0f dB} would leave room",
                 100.0 * truth->highlight_clipped, scene->objects[i].name,
                 truth->ceiling_over_seabed_db,
                 floor(truth->ceiling_over_seabed_db - CEILING_ROOM_DB));
@@ -132,7 +141,7 @@ void tell_result(struct report *report, const struct scene *scene, const struct 
     tell_empty(report, swath);
     tell_noise_floor(report, scene, statistics);
     tell_accuracy(report, statistics);
-    tell_scene(report, scene);
+    tell_scene(report, scene, swath);
     tell_seen(report, scene, result);
     tell_clipped(report, statistics);
 }
@@ -155,7 +164,7 @@ static void note_result(struct report *report, struct run_facts *facts)
 {
     struct result_notes notes = {report, json_array()};
     const struct report_host host = {.log_user = &notes};
-    struct report noting = {{0}, add_note, &host};
+    struct report noting = {.log = add_note, .host = &host};
     tell_result(&noting, facts->scene, facts->swath, facts->result);
     json_add(&facts->page, "notes", notes.page);
 }
@@ -318,9 +327,11 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
     facts.scene_hash = hash;
     facts.image_name = image_name;
     facts.label_formats = request->label_formats;
-    sonject_status status = image_name
-                                ? check_earlier(report, request, &swath, &facts, hash, &is_finished)
-                                : report_out_of_memory(report, "a path");
+    char image[PATH_CAPACITY];
+    sonject_status status = image_name ? path_in(report, image, request->folder, "%s", image_name)
+                                       : report_out_of_memory(report, "a path");
+    THEN(status, file_check_replaced(report, image));
+    THEN(status, check_earlier(report, request, &swath, &facts, hash, &is_finished));
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
     if (status == SONJECT_OK && !is_finished) {

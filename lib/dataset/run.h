@@ -15,6 +15,9 @@
 /* The share of a highlight's pixels at the image's ceiling above which a note tells the user. */
 #define CLIPPED_MUCH 0.1
 
+/* Visibility, dB, from which on a highlight stands out. */
+#define STANDS_OUT_DB 0.1
+
 /* The room between an echo's peak and the ceiling, so that speckle reaches the ceiling in only a
  * few of the echo's pixels. */
 #define CEILING_ROOM_DB 3.0
@@ -164,7 +167,7 @@ void tell_calibration(struct report *report, const struct scene *scene);
 void tell_calibration_doubts(struct report *report, const struct scene *scene);
 
 /* Logs what a scene's user should know before it is run. */
-void tell_scene(struct report *report, const struct scene *scene);
+void tell_scene(struct report *report, const struct scene *scene, const struct swath *swath);
 
 /* Returns the word of a sonject_source. */
 const char *source_word(uint32_t source);

@@ -99,8 +99,8 @@ static sonject_status describe_patch(struct growing_text *text, struct report *r
         view->wavelength_m * 1e3);
     CHECK(describe_altitudes(text, report, scene, &swath->patch));
     const struct report_host host = {.log_user = text};
-    struct report noting = {{0}, add_note, &host};
-    tell_scene(&noting, scene);
+    struct report noting = {.log = add_note, .host = &host};
+    tell_scene(&noting, scene, swath);
     describe_water(text, &view->water);
     growing_text_add(
         text, "injection  %s, paths that meet up to %u surface%s\n",
@@ -117,13 +117,15 @@ static void describe_objects(struct growing_text *text, const struct scene *scen
         const double *origin = object->origin;
         const double range = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
         const double grazing = ray_path_direction(&view->water, origin[1], origin[2]);
+        const double row = view_row_of_x(view, origin[0]);
         growing_text_add(
             text,
             "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
             "%.3f m, shadow %.2f m on the ground\n",
             (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
-            (double)scene->patch.first_row + view_row_of_x(view, origin[0]), range,
-            grazing * DEGREES_PER_RADIAN, object->top_m,
+            (double)scene->patch.first_row +
+                (view->is_mirrored ? (double)view->rows - 1.0 - row : row),
+            range, grazing * DEGREES_PER_RADIAN, object->top_m,
             ray_path_shadow(&view->water, origin[1], object->top_m, 0.0));
     }
 }

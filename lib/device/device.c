@@ -21,7 +21,7 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
                            size_t *count)
 {
     const size_t rest = capacity > 1 ? capacity - 1 : 0;
-    struct report of_opencl = {{0}, NULL, NULL};
+    struct report of_opencl = {.host = NULL};
     size_t gpu;
     if (capacity > 0)
         native_describe(&devices[0]);
@@ -38,7 +38,7 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
 /* Returns whether there is a GPU; false if OpenCL cannot be asked, as in a forked child. */
 static bool has_gpu(void)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     size_t count, gpu;
     return opencl_list(&ignored, NULL, 0, &count, &gpu) == SONJECT_OK && gpu < count;
 }

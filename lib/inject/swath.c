@@ -30,8 +30,9 @@ static sonject_status choose_patch(struct report *report, const struct scene *sc
         return scene_locate(
             scene, report,
             report_failure(report, SONJECT_ERROR_INPUT,
-                           "nadir_column %g leaves none of the image's %llu columns to %s: correct "
-                           "it, or the side",
+                           "nadir_column %g does not lie among the image's %llu columns with some "
+                           "to %s: if all of them lie to one side, name the column nearest to "
+                           "nadir and, as first_slant_range, its range",
                            scene->geometry.nadir_column, (unsigned long long)layout->columns,
                            scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard"),
             "input.geometry.nadir_column");
@@ -77,11 +78,13 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     swath->new_extension = swath_file_new_extension(file);
     swath->is_complex = swath->layout.channels == 2;
     swath->transfer = scene->transfer;
-    const double largest = (double)swath_file_largest(file);
-    swath->is_whole = largest > 0.0;
-    if (largest > 0.0 &&
-        !(swath->transfer.full_scale > 0.0 && swath->transfer.full_scale < largest))
-        swath->transfer.full_scale = largest;
+    swath->is_whole = swath_file_largest(file) > 0;
+    swath->full_scale = swath_file_full_scale(file);
+    swath_file_limit(file, &swath->transfer);
+    struct noted_geometry noted;
+    geometry_notes_read(file, &noted);
+    swath->files_geometry = scene->geometry;
+    swath->tells_geometry = geometry_notes_to_params(&noted, &swath->files_geometry);
     if (swath_file_range_axis(file) == RANGE_GROUND)
         return report_failure(
             report, SONJECT_ERROR_INPUT,
@@ -114,6 +117,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
 static sonject_status open_input(struct report *report, const struct scene *scene,
                                  struct swath_file **file)
 {
+    file_protect(report, scene->input_path);
     return swath_file_open_array(report, scene->input_path, scene->channel, scene->array, file);
 }
 
@@ -134,6 +138,7 @@ static sonject_status open_and_describe(struct report *report, const struct scen
         swath->layout = made_layout(scene);
         swath->is_complex = swath->layout.channels == 2;
         swath->is_made = true;
+        swath->full_scale = pixel_full_scale(swath->layout.type);
         swath->new_extension = ".tif";
     }
     THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));

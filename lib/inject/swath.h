@@ -22,8 +22,11 @@ struct swath {
                       linear pixels in memory */
     float *pixels; /* the patch in linear amplitudes or pairs */
     bool is_complex;
-    bool is_made;              /* made by sonject */
-    bool is_whole;             /* the file stores integers, even if the layout has floats */
+    bool is_made;        /* made by sonject */
+    bool is_whole;       /* the file stores integers, even if the layout has floats */
+    double full_scale;   /* of the numbers that the file stores */
+    bool tells_geometry; /* the file tells its geometry */
+    sonject_geometry_params files_geometry;
     const char *new_extension; /* the image's; NULL: a copy of the input's file with other pixels */
     struct track track;        /* track of a recording */
     struct ping_list skipped;  /* a recording's pings that make no row */

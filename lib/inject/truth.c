@@ -262,10 +262,10 @@ static struct window_box box_within(const sonject_box *box, const struct window_
     return inner;
 }
 
-/* Measures how the object shows amid the image's own speckle. The first water_columns and empty
- * rows are no seabed. */
+/* Measures how the object shows amid the image's own speckle, in pixels of at most the ceiling. The
+ * first water_columns and empty rows are no seabed. */
 static sonject_status see_object(struct report *report, const struct injected_window *result,
-                                 size_t water_columns, const bool *is_empty,
+                                 double ceiling, size_t water_columns, const bool *is_empty,
                                  sonject_object_truth *truth)
 {
     const struct window_box box = window_box_of(&truth->both);
@@ -273,6 +273,7 @@ static sonject_status see_object(struct report *report, const struct injected_wi
         box_with_margin(&box, SEABED_MARGIN, result->at.rows, result->at.columns);
     const struct window_box highlight = box_within(&truth->highlight, &wide);
     const struct window_box shadow = box_within(&truth->shadow, &wide);
+    const float most = (float)ceiling * (float)ceiling;
     struct contact_visibility visibility = {NAN, NAN};
     float *intensity = allocate_array(wide.rows, wide.columns * sizeof *intensity);
     struct contact_image image = {.intensity = intensity,
@@ -292,7 +293,8 @@ static sonject_status see_object(struct report *report, const struct injected_wi
         if (is_empty[wide.first_row + row])
             memset(image.taken + row * wide.columns, 1, wide.columns);
         for (size_t column = 0; column < wide.columns; column++)
-            intensity[row * wide.columns + column] = intensity_at(result, first + column);
+            intensity[row * wide.columns + column] =
+                fminf(intensity_at(result, first + column), most);
     }
     THEN(status, measure_visibility(&image, report, &highlight, &shadow, &visibility));
     truth->highlight_visibility_db = visibility.highlight_db;
@@ -303,9 +305,8 @@ static sonject_status see_object(struct report *report, const struct injected_wi
 }
 
 static sonject_status measure_objects(const struct tracer *tracer, const struct patch_level *level,
-                                      const struct speckle_statistics *speckle,
-                                      const struct echoes *echoes, const bool *is_empty,
-                                      struct injected_window *result)
+                                      const struct image_match *match, const struct echoes *echoes,
+                                      const bool *is_empty, struct injected_window *result)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < echoes->object_count; i++) {
@@ -319,9 +320,9 @@ static sonject_status measure_objects(const struct tracer *tracer, const struct 
         truth->highlight_visibility_db = truth->shadow_visibility_db = NAN;
         if (!truth->is_visible)
             continue;
-        status = measure_object(tracer, level, speckle, echoes, i, truth);
-        THEN(status, see_object(tracer->report, result, view_water_columns(&tracer->view), is_empty,
-                                truth));
+        status = measure_object(tracer, level, &match->seabed, echoes, i, truth);
+        THEN(status, see_object(tracer->report, result, match->ceiling,
+                                view_water_columns(&tracer->view), is_empty, truth));
     }
     return status;
 }
@@ -342,5 +343,5 @@ sonject_status find_truth(const struct tracer *tracer, const struct patch_level 
     for (uint32_t i = 0; i < echoes->object_count; i++)
         if (tracer_follows(tracer, i))
             find_visible_shadow(level, echoes, i, result);
-    return measure_objects(tracer, level, &match->seabed, echoes, is_empty, result);
+    return measure_objects(tracer, level, match, echoes, is_empty, result);
 }

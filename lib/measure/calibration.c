@@ -54,6 +54,7 @@ static void find_ceiling(const struct stored_swath *swath, struct calibration *f
     found->full_scale.how = "largest stored number, which far more pixels have than the next one";
     found->clipped.how = "share of pixels with this number; errors from strips of rows";
     found->full_scale.value = ceiling;
+    found->largest_number = swath->type_full;
     if (!isfinite(ceiling)) {
         found->full_scale.unseen = found->clipped.unseen =
             swath->is_complex ? "complex pixels have no ceiling"

@@ -113,6 +113,7 @@ struct calibration {
     struct curve_fit fits[CURVE_FAMILIES];
     enum curve_family family;
     struct plain_tiles tiles;
+    double largest_number; /* that the swath's type holds */
     struct estimate full_scale, clipped, looks, shape;
     struct estimate room_db;        /* ceiling over the seabed in the middle columns, dB */
     size_t plain_row, plain_column; /* middle of a plain tile there that is darker than most */

@@ -220,6 +220,7 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
     if (found->column_spacing_m > 0.0)
         json_add(&measured, "column_spacing", told(found->column_spacing_m));
     json_add(&measured, "transfer", measured_curve(found));
+    json_add(&measured, "largest_number", JSON_OBJECT({"value", number_of(found->largest_number)}));
     json_add(&measured, "full_scale", seen(&found->full_scale, NULL));
     json_add(&measured, "clipped", seen(&found->clipped, NULL));
     json_t *room = seen(&found->room_db, "dB");

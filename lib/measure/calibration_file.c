@@ -65,6 +65,8 @@ static sonject_status read_swath(struct report *report, const char *path, struct
     swath->values = *values;
     if (status == SONJECT_OK)
         find_type(swath, layout.type, stored);
+    if (status == SONJECT_OK && swath_file_largest(file) > 0)
+        swath->type_full = swath_file_full_scale(file);
     free(stored);
     return status;
 }
@@ -194,6 +196,7 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
         swath = *pixels;
         find_type(&swath, PIXEL_FLOAT32, NULL);
     } else {
+        file_protect(report, params->image);
         status =
             swath_file_open_array(report, params->image, options->channel, options->array, &file);
         THEN(status, read_swath(report, params->image, file, &swath, &values));

@@ -128,25 +128,27 @@ static sonject_status find_side(struct report *report, const float *intensity, s
     return status;
 }
 
-/* Finds the middle of the darkest columns: those around the darkest one whose mean levels over the
- * rows are nearer to its level than to the median. A transmitted pulse among them counts, too. */
+/* Finds the middle of the darkest columns of some: those around the darkest one whose mean levels
+ * over the rows are nearer to its level than to the median of all columns. A transmitted pulse
+ * among them counts, too. */
 static sonject_status find_darkest(struct report *report, const float *intensity, size_t rows,
-                                   size_t columns, size_t *middle)
+                                   size_t columns, size_t first_column, size_t end_column,
+                                   size_t *middle)
 {
     const size_t stride = rows / PROFILE_ROWS + 1;
     double *profile = allocate_array(columns, 2 * sizeof *profile);
     double *sorted = profile + columns;
-    size_t darkest = 0;
+    size_t darkest = first_column;
     CHECK_MEMORY(report, profile, "the water column");
     for (size_t row = 0; row < rows; row += stride)
         for (size_t column = 0; column < columns; column++)
             profile[column] += log(fmax(FAINTEST, (double)intensity[row * columns + column]));
     memcpy(sorted, profile, columns * sizeof *profile);
     qsort(sorted, columns, sizeof *sorted, compare_doubles);
-    for (size_t column = 0; column < columns; column++)
+    for (size_t column = first_column; column < end_column; column++)
         if (profile[column] < profile[darkest])
             darkest = column;
-    const double edge = 0.5 * (sorted[0] + sorted[columns / 2]);
+    const double edge = 0.5 * (profile[darkest] + sorted[columns / 2]);
     size_t first = darkest, last = darkest;
     for (size_t column = darkest; column < columns && column <= last + 2 * PULSE; column++)
         last = profile[column] < edge ? column : last;
@@ -192,13 +194,18 @@ sonject_status first_returns_find(struct first_returns *returns, struct report *
     sonject_status status = right && left && returns->columns
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the water column");
-    if (rows > 0 && columns > 0)
-        THEN(status, find_darkest(report, intensity, rows, columns, &middle));
-    THEN(status,
-         find_side(report, intensity, rows, columns, middle, columns - middle, false, right));
-    THEN(status, find_side(report, intensity, rows, columns, 0, middle, true, left));
-    if (status == SONJECT_OK && rows > 0 && right[rows - 1] > 0 && left[rows - 1] > 0)
-        status = join_sides(returns, report, right, left, rows, middle);
+    /* far seabed may be darker than the water column: then the nadir is sought about the middle */
+    for (size_t attempt = 0; attempt < 2 && rows > 0 && columns > 0 && status == SONJECT_OK &&
+                             returns->sides == WATER_UNSEEN;
+         attempt++) {
+        const size_t margin = attempt * (columns / 4);
+        status = find_darkest(report, intensity, rows, columns, margin, columns - margin, &middle);
+        THEN(status,
+             find_side(report, intensity, rows, columns, middle, columns - middle, false, right));
+        THEN(status, find_side(report, intensity, rows, columns, 0, middle, true, left));
+        if (status == SONJECT_OK && right[rows - 1] > 0 && left[rows - 1] > 0)
+            status = join_sides(returns, report, right, left, rows, middle);
+    }
     for (int is_mirrored = 0; is_mirrored < 2 && returns->sides == WATER_UNSEEN; is_mirrored++) {
         THEN(status, find_side(report, intensity, rows, columns, 0, columns, is_mirrored, right));
         if (status != SONJECT_OK || rows == 0 || right[rows - 1] == 0)

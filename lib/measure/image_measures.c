@@ -69,16 +69,19 @@ static void take_spacings(const struct swath_file *file, struct measured *measur
     measured->column_spacing_m = told.column_spacing_m;
 }
 
-/* Reads all of an image. *stored is for free(). measured: gets the spacings, unless NULL. */
+/* Reads all of an image. *stored is for free(). measured gets the spacings, and transfer its full
+ * scale; both NULL for a mask. */
 static sonject_status read_stored(struct report *report, const char *path, int32_t channel,
                                   const char *array, struct raster_layout *layout, void **stored,
-                                  struct measured *measured)
+                                  struct measured *measured, sonject_transfer_params *transfer)
 {
     struct swath_file *file = NULL;
     *stored = NULL;
     CHECK(swath_file_open_array(report, path, channel, array, &file));
-    if (measured)
+    if (measured) {
         take_spacings(file, measured);
+        swath_file_limit(file, transfer);
+    }
     const sonject_status status = swath_file_read_all(report, file, layout, stored);
     swath_file_close(&file);
     return status;
@@ -104,7 +107,7 @@ static sonject_status read_mask(struct report *report, const char *path,
     if (!path)
         return SONJECT_OK;
     sonject_status status =
-        read_stored(report, path, SONJECT_CHANNEL_ONLY, NULL, &layout, &stored, NULL);
+        read_stored(report, path, SONJECT_CHANNEL_ONLY, NULL, &layout, &stored, NULL, NULL);
     THEN(status, check_size(report, path, layout.rows, layout.columns, measured));
     if (status == SONJECT_OK) {
         const size_t bytes = layout.channels * pixel_bytes(layout.type);
@@ -127,8 +130,9 @@ sonject_status read_amplitudes(struct report *report, const sonject_measure_para
     void *stored = NULL;
     size_t bad = 0;
     uint64_t clipped = 0;
+    sonject_transfer_params transfer = options->transfer;
     sonject_status status = read_stored(report, params->image, options->channel, options->array,
-                                        &layout, &stored, measured);
+                                        &layout, &stored, measured, &transfer);
     if (status != SONJECT_OK) {
         free(stored);
         return status;
@@ -139,8 +143,8 @@ sonject_status read_amplitudes(struct report *report, const sonject_measure_para
     float *linear = allocate_array(count, layout.channels * sizeof *linear);
     if (!linear)
         status = report_out_of_memory(report, params->image);
-    else if (transfer_to_amplitude(&options->transfer, layout.type, stored, count * layout.channels,
-                                   linear, &bad, &clipped) != SONJECT_OK)
+    else if (transfer_to_amplitude(&transfer, layout.type, stored, count * layout.channels, linear,
+                                   &bad, &clipped) != SONJECT_OK)
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: the pixel at row %zu, column %zu is not a finite number",
                                 params->image, bad / layout.channels / measured->columns,

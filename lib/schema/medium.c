@@ -102,7 +102,7 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
                                       const char *key, struct profile_table *table)
 {
     const double depth = reader->scene->surface.water_depth_m;
-    struct report check = {{0}, NULL, NULL};
+    struct report check = {.host = NULL};
     struct water_layer *layers;
     size_t count;
     if (table->is_depth && !is_valid_in_file(reader, "surface.depth"))

@@ -105,7 +105,7 @@ static sonject_status doubt_size(struct reader *reader, const struct tree_node *
 static sonject_status load(struct reader *reader, const struct tree_node *node,
                            const struct mesh_text *mesh, uint32_t *number)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct mesh_options options;
     mesh_options_init(&options);
     options.unit_m = mesh->unit_m > 0.0 ? mesh->unit_m : 1.0;

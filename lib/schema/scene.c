@@ -454,7 +454,7 @@ sonject_status read_version(struct reader *reader, const struct tree_node *node,
 /* Takes geometry and altitude from the input file, where the scene leaves them to the file. */
 static void take_recording(struct reader *reader)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     const char *key;
     struct scene *scene = reader->scene;
     scene->has_pings_range = reader->takes_first_range && scene->pings.first_ranges_m;

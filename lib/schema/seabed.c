@@ -190,7 +190,7 @@ static sonject_status read_relief_heights(struct reader *reader, const struct tr
                                           void *structure)
 {
     struct heights_text text = {.path = NULL};
-    struct report report = {{0}, NULL, reader->report->host};
+    struct report report = {.host = reader->report->host};
     (void)structure;
     if (reader->scene->relief.heights_m)
         return refuse_value(reader, node, "only one file of heights is possible; join them");

@@ -15,6 +15,7 @@ struct conversion {
     struct raster_layout layout;
     void *pixels; /* owned */
     struct noted_geometry geometry;
+    double full_scale; /* of the file's numbers */
     bool is_resampled;
 };
 
@@ -157,11 +158,13 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
                                  const struct image_options *options, struct conversion *conversion)
 {
     struct swath_file *file = NULL;
+    file_protect(report, params->input);
     CHECK(swath_file_open_beside(report, params->input, params->into, options->channel,
                                  options->array, &file));
     sonject_status status =
         swath_file_read_all(report, file, &conversion->layout, &conversion->pixels);
     THEN(status, take_geometry(report, conversion, file, params, options));
+    conversion->full_scale = swath_file_full_scale(file);
     swath_file_close(&file);
     return status;
 }
@@ -218,9 +221,9 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     if (conversion->is_resampled)
         attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
     if (params->black_db < params->white_db)
-        attributes[count++] =
-            raster_make_grey(&conversion->layout, conversion->pixels,
-                             (const double[]){params->black_db, params->white_db}, ends);
+        attributes[count++] = raster_make_grey(
+            report, &conversion->layout, conversion->pixels, conversion->full_scale,
+            (const double[]){params->black_db, params->white_db}, ends);
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
     if (status == SONJECT_OK && count > 0 && !is_kept)

@@ -120,7 +120,7 @@ static sonject_status ask(struct report *report, const struct decoded_image *ima
 
 void decoded_image_close(struct decoded_image **image)
 {
-    struct report unheard = {{0}, NULL, NULL};
+    struct report unheard = {.host = NULL};
     struct decoder_request request = {.function = DECODER_CLOSE};
     if (!image || !*image)
         return;
@@ -237,7 +237,7 @@ static sonject_status patch_copy(struct report *report, const struct decoded_ima
 static sonject_status check_copy(struct report *report, const struct decoded_image *image,
                                  const struct swath_copy *copy)
 {
-    struct report unheard = {{0}, NULL, report->host};
+    struct report unheard = {.host = report->host};
     struct decoded_image *made = NULL;
     size_t bytes = 0;
     void *found =

@@ -93,7 +93,7 @@ static sonject_status open_image(struct question *question)
     const char *name = question->texts[0];
     const char *array = *question->texts[2] ? question->texts[2] : NULL;
     struct image_facts facts = {.description = NULL};
-    struct report unheard = {{0}, NULL, NULL};
+    struct report unheard = {.host = NULL};
     uint32_t place = 0;
     while (place < DECODER_FILES_MAX && question->state->files[place].name)
         place++;
@@ -171,7 +171,7 @@ static sonject_status tell_disk(struct question *question, sonject_status status
 
 void decoder_state_release(struct decoder_state **state)
 {
-    struct report unheard = {{0}, NULL, NULL};
+    struct report unheard = {.host = NULL};
     struct hdf5_session session;
     if (!*state)
         return;

@@ -14,7 +14,7 @@
 
 static bool serve(const struct channel *channel, struct decoder_state *state)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct decoder_request request;
     struct decoder_reply reply;
     void *out = NULL;

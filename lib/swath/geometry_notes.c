@@ -130,7 +130,7 @@ static sonject_status check_told(const sonject_geometry_params *geometry, struct
 
 bool geometry_notes_to_params(const struct noted_geometry *noted, sonject_geometry_params *geometry)
 {
-    struct report unused = {{0}, NULL, NULL};
+    struct report unused = {.host = NULL};
     sonject_geometry_params told = *geometry;
     told.row_spacing_m = noted->row_spacing_m;
     told.column_spacing_m = noted->column_spacing_m;
@@ -143,6 +143,30 @@ bool geometry_notes_to_params(const struct noted_geometry *noted, sonject_geomet
         return false;
     *geometry = told;
     return true;
+}
+
+static bool is_another(double files, double given)
+{
+    return fabs(given - files) > 0.05 * fabs(files);
+}
+
+void tell_other_geometry(struct report *report, const char *path,
+                         const sonject_geometry_params *files, const sonject_geometry_params *given)
+{
+    const bool are_alike = files->nadir_column == given->nadir_column;
+    /* a first range is as good as known within a metre */
+    const bool is_beside = are_alike &&
+                           fabs(files->first_slant_range_m - given->first_slant_range_m) > 1.0 &&
+                           is_another(files->first_slant_range_m, given->first_slant_range_m);
+    if (is_beside || is_another(files->row_spacing_m, given->row_spacing_m) ||
+        is_another(fabs(files->column_spacing_m), fabs(given->column_spacing_m)))
+        report_note(report,
+                    "%s tells other spacings and ranges than the scene: rows of %.4g m, not %.4g, "
+                    "columns of %.4g m, not %.4g, from %.4g m on, not %.4g; input.geometry: "
+                    "from_file takes the file's",
+                    path, files->row_spacing_m, given->row_spacing_m, fabs(files->column_spacing_m),
+                    fabs(given->column_spacing_m), files->first_slant_range_m,
+                    given->first_slant_range_m);
 }
 
 /* Finds the rows of the scene's patch in the file. A patch of all zeros means all rows. */
@@ -386,7 +410,7 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
 static sonject_status check_and_set(struct report *report, const struct wanted *wanted,
                                     struct scene *scene)
 {
-    struct report why = {{0}, NULL, NULL};
+    struct report why = {.host = NULL};
     struct check check = {&why, NULL, SONJECT_OK};
     const bool takes_geometry = wanted->wish.geometry || wanted->wish.first_range;
     *wanted->key = "input.geometry";

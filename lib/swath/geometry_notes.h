@@ -43,6 +43,11 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
 bool geometry_notes_to_params(const struct noted_geometry *noted,
                               sonject_geometry_params *geometry);
 
+/* Notes where the geometry that a scene gives is not the file's own, within a twentieth. */
+void tell_other_geometry(struct report *report, const char *path,
+                         const sonject_geometry_params *files,
+                         const sonject_geometry_params *given);
+
 /* The values that a scene leaves to its input. */
 struct recording_wish {
     bool geometry;

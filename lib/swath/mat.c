@@ -70,10 +70,11 @@ struct mat_array {
     struct part parts[2];
 };
 
-/* Inflates the beginning of a variable, at most capacity bytes; *count gets how many. Returns false
- * if the variable is damaged. Elements have at most 2^32 bytes, which zlib's sizes hold. */
-static bool inflate_start(const unsigned char *compressed, size_t compressed_bytes,
-                          unsigned char *bytes, size_t capacity, size_t *count)
+/* Inflates a variable, or its beginning: at most capacity bytes; *count gets how many. Returns
+ * false if the variable is damaged. Its checksum stands at its end, which is looked at if is_whole.
+ * Elements have at most 2^32 bytes, which zlib's sizes hold. */
+static bool inflate_variable(const unsigned char *compressed, size_t compressed_bytes,
+                             bool is_whole, unsigned char *bytes, size_t capacity, size_t *count)
 {
     z_stream stream;
     memset(&stream, 0, sizeof stream);
@@ -83,10 +84,16 @@ static bool inflate_start(const unsigned char *compressed, size_t compressed_byt
     stream.avail_out = (uInt)capacity;
     if (inflateInit(&stream) != Z_OK)
         return false;
-    const int answer = inflate(&stream, Z_NO_FLUSH);
+    int answer = inflate(&stream, Z_NO_FLUSH);
     *count = capacity - stream.avail_out;
+    if (is_whole && answer == Z_OK) {
+        unsigned char beyond;
+        stream.next_out = &beyond;
+        stream.avail_out = sizeof beyond;
+        answer = inflate(&stream, Z_NO_FLUSH);
+    }
     inflateEnd(&stream);
-    return answer == Z_OK || answer == Z_STREAM_END || answer == Z_BUF_ERROR;
+    return answer == Z_STREAM_END || (!is_whole && (answer == Z_OK || answer == Z_BUF_ERROR));
 }
 
 /* Returns false for types other than floats and integers of up to 32 bits. */
@@ -190,7 +197,7 @@ static sonject_status look_at(struct report *report, const struct swath_file *fi
     if (!byte_file_read(file->stream, from, stored, count))
         return damaged(report, file, from);
     if (variable->is_compressed) {
-        if (!inflate_start(stored, count, inflated, sizeof inflated, &count))
+        if (!inflate_variable(stored, count, false, inflated, sizeof inflated, &count))
             return damaged(report, file, from);
         head = inflated;
     }
@@ -232,7 +239,7 @@ static sonject_status inflate_element(struct report *report, const struct swath_
     struct mat_array *mat = file->mat;
     unsigned char tag[TAG_BYTES];
     size_t got = 0;
-    if (!inflate_start(stored, count, tag, sizeof tag, &got) || got != sizeof tag)
+    if (!inflate_variable(stored, count, false, tag, sizeof tag, &got) || got != sizeof tag)
         return damaged(report, file, mat->variable.place);
     const uint64_t bytes = TAG_BYTES + number_from_bytes(tag + 4, 4, mat->is_big_endian);
     if (bytes / DEFLATE_RATIO > count || bytes > UINT32_MAX)
@@ -240,7 +247,7 @@ static sonject_status inflate_element(struct report *report, const struct swath_
     mat->element_bytes = (size_t)bytes;
     mat->element = allocate_array(mat->element_bytes, 1);
     CHECK_MEMORY(report, mat->element, "an array");
-    if (!inflate_start(stored, count, mat->element, mat->element_bytes, &got) ||
+    if (!inflate_variable(stored, count, true, mat->element, mat->element_bytes, &got) ||
         got != mat->element_bytes)
         return damaged(report, file, mat->variable.place);
     return SONJECT_OK;

@@ -60,7 +60,9 @@ static sonject_status read_reduced(struct report *report, const char *path, stru
                                    struct view_image *image)
 {
     struct raster_layout layout;
+    sonject_transfer_params limited = *transfer;
     swath_file_layout(file, &layout);
+    swath_file_limit(file, &limited);
     const uint64_t longest = layout.rows > layout.columns ? layout.rows : layout.columns;
     image->block = (longest + SIDE_LIMIT - 1) / SIDE_LIMIT;
     image->rows = (size_t)((layout.rows + image->block - 1) / image->block);
@@ -81,7 +83,7 @@ static sonject_status read_reduced(struct report *report, const char *path, stru
             strip.rows = layout.rows - strip.first_row;
         status = swath_file_read(report, file, &strip, stored);
         for (uint64_t row = 0; status == SONJECT_OK && row < strip.rows; row++)
-            status = add_row(report, path, image, transfer, &layout, strip.first_row + row,
+            status = add_row(report, path, image, &limited, &layout, strip.first_row + row,
                              stored + row * row_bytes, linear);
     }
     if (status == SONJECT_OK)
@@ -183,6 +185,7 @@ sonject_status draw_quicklook(struct report *report, const sonject_quicklook_par
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
     double altitude = 0.0;
+    file_protect(report, params->image);
     CHECK(swath_file_open_array(report, params->image, options->channel, options->array, &file));
     sonject_status status = read_reduced(report, params->image, file, &options->transfer, &image);
     if (status == SONJECT_OK) {

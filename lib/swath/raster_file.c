@@ -29,17 +29,27 @@ struct patched_rows {
     int quality; /* JPEG's; 0: the finest */
 };
 
-struct raster_attribute raster_make_grey(struct raster_layout *layout, void *pixels,
-                                         const double ends_db[2], char text[GREY_TEXT])
+struct raster_attribute raster_make_grey(struct report *report, struct raster_layout *layout,
+                                         void *pixels, double full_scale, const double ends_db[2],
+                                         char text[GREY_TEXT])
 {
-    const double full_scale = pixel_full_scale(layout->type);
+    const size_t count = (size_t)layout->rows * (size_t)layout->columns;
     unsigned char *grey = pixels;
-    for (size_t i = 0; i < (size_t)layout->rows * (size_t)layout->columns; i++) {
+    size_t white = 0, black = 0;
+    for (size_t i = 0; i < count; i++) {
         const double amplitude = pixel_magnitude(layout, pixels, i) / full_scale;
         const double level = 20.0 * log10(fmax(amplitude, 1e-300));
         const double share = (level - ends_db[0]) / (ends_db[1] - ends_db[0]);
         grey[i] = (unsigned char)(255.0 * fmin(fmax(share, 0.0), 1.0) + 0.5);
+        white += share >= 1.0;
+        black += share <= 0.0;
     }
+    if (2 * white > count || 2 * black > count)
+        report_note(report,
+                    "%.0f %% of the pixels are %s at grey levels of %g to %g dB: levels are over "
+                    "full scale, %g here; sonject quicklook shows which suit",
+                    100.0 * (double)(white > black ? white : black) / (double)count,
+                    white > black ? "white" : "black", ends_db[0], ends_db[1], full_scale);
     layout->channels = 1;
     layout->type = PIXEL_UINT8;
     snprintf(text, GREY_TEXT, "%g dB, %g dB", ends_db[0], ends_db[1]);

@@ -18,10 +18,12 @@ struct raster_attribute {
 #define GREY_ATTRIBUTE "sonject:grey"
 #define GREY_TEXT      64 /* bytes of the attribute's value */
 
-/* Converts pixels in place to 8 bit grey levels in dB. ends_db: black and white over full scale.
- * Returns an attribute that tells the levels, with the value `text`. */
-struct raster_attribute raster_make_grey(struct raster_layout *layout, void *pixels,
-                                         const double ends_db[2], char text[GREY_TEXT]);
+/* Converts pixels in place to 8 bit grey levels in dB. ends_db: black and white over full_scale.
+ * Notes if most pixels are white or black. Returns an attribute that tells the levels, with the
+ * value `text`. */
+struct raster_attribute raster_make_grey(struct report *report, struct raster_layout *layout,
+                                         void *pixels, double full_scale, const double ends_db[2],
+                                         char text[GREY_TEXT]);
 
 struct swath_copy;
 

@@ -72,7 +72,7 @@ static sonject_status open_recognised(struct report *report, struct swath_file *
 /* Returns NULL for a file that cannot be read. Opening the file reports why. */
 static const struct swath_format *format_of(const char *path)
 {
-    struct report unheard = {{0}, NULL, NULL};
+    struct report unheard = {.host = NULL};
     struct swath_file *file = NULL;
     const struct swath_format *format =
         path && recognise(&unheard, path, &file) == SONJECT_OK ? file->format : NULL;
@@ -124,6 +124,18 @@ int swath_file_jpeg_quality(const struct swath_file *file)
 uint32_t swath_file_largest(const struct swath_file *file)
 {
     return file->largest;
+}
+
+double swath_file_full_scale(const struct swath_file *file)
+{
+    return file->largest > 0 ? (double)file->largest : pixel_full_scale(file->layout.type);
+}
+
+void swath_file_limit(const struct swath_file *file, sonject_transfer_params *transfer)
+{
+    const double largest = (double)file->largest;
+    if (largest > 0.0 && !(transfer->full_scale > 0.0 && transfer->full_scale < largest))
+        transfer->full_scale = largest;
 }
 
 enum range_axis swath_file_range_axis(const struct swath_file *file)

@@ -39,6 +39,12 @@ int swath_file_jpeg_quality(const struct swath_file *file);
 /* Returns the largest number that the file may hold if that is less than its type's; else 0. */
 uint32_t swath_file_largest(const struct swath_file *file);
 
+/* Returns that number, or the full scale of the type. */
+double swath_file_full_scale(const struct swath_file *file);
+
+/* Lowers a transfer function's full scale to the largest number that the file may hold. */
+void swath_file_limit(const struct swath_file *file, sonject_transfer_params *transfer);
+
 /* The range axis that a file states for its columns. */
 enum range_axis {
     RANGE_UNKNOWN,

@@ -88,7 +88,7 @@ sonject_status sums_folder_shards(struct report *report, const char *path, uint6
 
 void sums_folder_remove(const char *path)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     struct folder_names list;
     uint64_t shard, shards;
     (void)list_names(&list, &ignored, path); /* the list is empty on failure */

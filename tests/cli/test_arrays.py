@@ -7,6 +7,7 @@ import pytest
 
 import images
 from conftest import COLUMNS, ROWS, SCENE, assert_refused
+from measured_images import read_png
 
 h5py = pytest.importorskip("h5py")
 scipy_io = pytest.importorskip("scipy.io")
@@ -134,6 +135,30 @@ def test_matlab_5(sonject, tmp_path, swath, kind, compressed):
     if not compressed:
         assert len((tmp_path / "line.mat").read_bytes()) == len(
             (tmp_path / "out/image.mat").read_bytes())
+
+
+def test_a_damaged_matlab_5_file_is_told(sonject, tmp_path, swath):
+    """Wherever a byte is wrong, the variable's checksum tells."""
+    scipy_io.savemat(tmp_path / "line.mat", {"swath": swath}, do_compression=True)
+    whole = (tmp_path / "line.mat").read_bytes()
+    for place in range(2000, len(whole) - 1, len(whole) // 12):
+        (tmp_path / "line.mat").write_bytes(whole[:place] + bytes([whole[place] ^ 0x55]) + whole[place + 1:])
+        assert_refused(sonject("measure", "line.mat"), 3, "line.mat: cut short or damaged")
+
+
+@pytest.mark.parametrize("kind, largest", [("u2", 65535), ("i2", 32767), ("i4", 2**31 - 1), ("u4", 2**32 - 1)])
+def test_levels_are_over_the_largest_number_of_the_type(sonject, tmp_path, kind, largest):
+    """All verbs take the same full scale, that of runs."""
+    share = numpy.random.default_rng(3).rayleigh(0.05, (120, 160)).clip(0, 1)
+    numpy.save(tmp_path / "line.npy", (share * largest).astype(kind))
+    sonject.done("convert", "line.npy", "grey.png", "--db=-60:0")
+    expected = 255 * (20 * numpy.log10(share.clip(1e-9)) + 60).clip(0, 60) / 60
+    assert numpy.abs(read_png(tmp_path / "grey.png") - expected).max() < 1.6
+    measured = json.loads(sonject.done("measure", "line.npy", "--transfer", "schlick:20").stdout)
+    linear = (share / (20 - 19 * share)) ** 2
+    assert measured["seabed"]["intensity_contrast"] == pytest.approx(linear.std() / linear.mean(), rel=0.1)
+    picture = sonject.done("convert", "line.npy", "white.png", "--db=-90:-60")
+    assert "% of the pixels are white at grey levels of -90 to -60 dB" in picture.stderr
 
 
 def test_the_same_pixels_give_the_same_image(sonject, tmp_path, swath, scene):

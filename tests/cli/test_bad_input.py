@@ -81,6 +81,24 @@ def test_images_and_scenes_that_are_not_there_or_damaged(sonject, scene, swath):
     refuse(sonject, scene, 3, "scene.yaml")
 
 
+@pytest.mark.parametrize("words", [
+    ("run", "scene.yaml", "-o", "."), ("run", "shadow.yaml", "-o", "."), ("trace", "scene.yaml", "-o", "image.tif"),
+    ("convert", "image.tif", "image.tif", "--db=-40:0"), ("calibrate", "image.tif", "--picture", "image.tif"),
+    ("calibrate", "image.tif", "-o", "linked.tif"), ("quicklook", "shadow.png", "-o", "shadow.png")])
+def test_no_result_replaces_the_image_that_was_read(sonject, scene, tmp_path, words):
+    (tmp_path / "swath.tif").rename(tmp_path / "image.tif")
+    (tmp_path / "linked.tif").symlink_to("image.tif")
+    edit(scene, "path: swath.tif", "path: image.tif")
+    sonject.done("convert", "image.tif", "shadow.png", "--db=-40:0")
+    (tmp_path / "shadow.yaml").write_text(scene.read_text().replace(
+        "path: image.tif", "path: shadow.png\n  transfer: {kind: decibel, parameter: 0.157, offset: -40}"))
+    before = {name: (tmp_path / name).read_bytes() for name in ("image.tif", "shadow.png")}
+    answer = sonject(*words)
+    assert answer.returncode == 2 and "is the image that was read, and no result replaces it" in answer.stderr
+    assert {name: (tmp_path / name).read_bytes() for name in before} == before
+    assert not list(tmp_path.glob("*.part*"))
+
+
 def test_every_verb_tells_all_mistakes_in_their_order(sonject, scene):
     edit(scene, "100 kHz", "100 parsec")
     edit(scene, "column_spacing: 2.5 cm", "colum_spacing: 2.5 cm")

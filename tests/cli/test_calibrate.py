@@ -270,6 +270,16 @@ def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     assert altitude_of(sonject.done("check", "scene.yaml").stdout) == pytest.approx((columns + 0.5) * 0.05, abs=0.006)
 
 
+def test_the_nadir_is_found_beside_a_far_range_that_is_darker(sonject, tmp_path):
+    """Far seabed falls below the level of the water column, as in a recording without gain."""
+    made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers.astype(float)
+    made[:, -60:] *= 0.004
+    both = numpy.maximum(numpy.hstack([made[:, ::-1], made]), 1)
+    numpy.save(tmp_path / "both.npy", both.astype(numpy.uint16))
+    nadir = calibrated(sonject, "both.npy")["measured"]["nadir_column"]
+    assert nadir["value"] == pytest.approx(made.shape[1] - 0.5, abs=1)
+
+
 @pytest.mark.parametrize("key, why", [
     ("input.calibration=auto", "first_return needs a calibration that already exists"),
     ("input.calibration=none.yaml", "first_return needs an input.calibration that has first returns"),

@@ -164,6 +164,12 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
         ratio = abs(swath["column"] + 47.5 - 599.5) * 0.05 / 5
         is_port = swath["column"] < 600
         assert limits[1 if is_port else 2][0] <= ratio <= limits[1 if is_port else 2][1]
+    # a swath that has places near the nadir alone
+    near = ("{path: line.tif, set: {input.geometry.side: port}, avoid: [{row: 0, column: 0, rows: 1000, columns: 400}]}")
+    told = sonject.done("fit", "start.yaml", "contacts.csv", "-o", "near.yaml", "--set", f"swaths[2]={near}").stderr
+    assert "only images of swaths that show contacts are limited to them" in told
+    assert re.findall(r"range_over_altitude: .*", (tmp_path / "near.yaml").read_text()) == re.findall(
+        r"range_over_altitude: .*", text)[1:]
 
 
 def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tmp_path):
@@ -185,6 +191,11 @@ def test_contacts_of_a_recording_are_on_one_of_its_sides_or_on_chips(sonject, tm
     (tmp_path / "contacts.csv").write_text(contacts.replace("starboard", ""))
     done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
     assert done.returncode == 3 and "line.xtf: shows two sides, which are two swaths of the campaign" in done.stderr
+    (tmp_path / "labels").mkdir()
+    (tmp_path / "labels" / "line.xtf").symlink_to(tmp_path / "line.xtf")
+    (tmp_path / "labels" / "line.txt").write_text("0 0.5 0.5 0.1 0.1\n")
+    done = sonject("fit", "start.yaml", "labels", "-o", "fitted.yaml")
+    assert done.returncode == 3 and "line.txt:1: the recording has two sides, and the label does not say which" in done.stderr
     (tmp_path / "contacts.csv").write_text(contacts)
     done = sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
     unmatched = page_data(tmp_path, "fitted.html")["unmatched"]  # stones of one size beside drawn targets

@@ -249,6 +249,20 @@ def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
     assert len(notes) == (note is not None) and all(note in line for line in notes)
 
 
+def test_a_seabed_near_the_ceiling_is_told_once(sonject, tmp_path):
+    swath = numpy.random.default_rng(6).rayleigh(300, (128, 128))
+    write(tmp_path / "swath.tif", numpy.minimum(swath, 255).astype(numpy.uint8))
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: swath.tif, transfer: {kind: amplitude}, geometry: {row_spacing: 2.5 cm, "
+        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+        "objects: [{level: {over_seabed: 6 dB}, name: ball, shape: sphere, diameter: 60 cm, "
+        "material: {reflection: 0, lambert: 0.1}, position: {row: 80, column: 80}}]\n")
+    notes = sonject.done("run", "scene.yaml", "-o", "out").stderr
+    assert re.search("no highlight of 'ball' can stand out: the seabed there is [0-9.]+ dB below the image's ceiling", notes)
+    assert "raise" not in notes and "would leave room" not in notes
+
+
 @pytest.mark.parametrize("level, ceiling, stored", [
     (24, 255, numpy.uint8), (24, 200, numpy.uint8), (24, 15, numpy.uint8), (10, 255, numpy.uint8),
     (24, None, numpy.float32)])

@@ -371,6 +371,7 @@ FRAGMENTS = {
     "{kind: schlick, parameter: 20}": ("input.transfer", [], []),
     "calibration: auto": ("input.", [], []),
     "array: swath": ("input.", [], []),
+    "nadir_column: 399": ("input.geometry.", [], []),
     "injection.noise_floor: -18 dB": ("", [], []),
     "noise_floor: -25 dB": ("injection.", [], []),
     "injection.noise_floor_over: -20 dB": ("", [], []),

@@ -325,9 +325,9 @@ sonject:range_axis=slant"""))
 @pytest.mark.parametrize("geometry, patch, words", [
     ("nadir_column: 0", "", "input.geometry.nadir_column: must be above 0, not 0"),
     ("nadir_column: 400, side: port", "",
-     "input.geometry.nadir_column: nadir_column 400 leaves none of the image's 400 columns to port: correct it, or"),
+     "input.geometry.nadir_column: nadir_column 400 does not lie among the image's 400 columns with some to port: if all"),
     ("nadir_column: 399.5, side: starboard", "",
-     "input.geometry.nadir_column: nadir_column 399.5 leaves none of the image's 400 columns to starboard"),
+     "input.geometry.nadir_column: nadir_column 399.5 does not lie among the image's 400 columns with some to starboard"),
     ("nadir_column: 203.5, side: port", "{row: 0, column: 100, rows: 60, columns: 120}",
      "the patch's columns 100 to 219 are not all to port of nadir_column 203.5: choose others, or the other side"),
     ("nadir_column: 203.5, side: starboard", "{row: 0, column: 203, rows: 60, columns: 120}",
@@ -528,3 +528,12 @@ objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 3
         assert changed.sum() > 300
         # the numbers of first slant range differ by roundings alone
         assert (half != expected).sum() < 0.002 * changed.sum()
+
+
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_check_tells_the_images_rows(sonject, tmp_path, side):
+    (tmp_path / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{synthetic: {{rows: 100, columns: 128}}, geometry: {{row_spacing: 5 cm, side: {side}, "
+        "column_spacing: 5 cm, first_slant_range: 20 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 5 m}\n"
+        "objects: [{shape: sphere, diameter: 40 cm, position: {row: 20, column: 60}}]\n")
+    assert "(sphere): row 20.0, slant range" in sonject.done("check", "scene.yaml").stdout

@@ -60,7 +60,7 @@ static sonject_status use(struct report *report, const char *path, const char *c
 
 static void expect_told(const char *path, const char *copy)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     long count = 0;
     due = 0;
     calls = 0;
@@ -95,7 +95,7 @@ IN_FOLDER(test_written_formats)
     static float pixels[SIDE * SIDE];
     expect_told(SOURCE_ROOT "/tests/unit/heights.mat", temporary_file(*state, "copy.mat"));
     for (size_t i = 0; i < COUNT(formats); i++) {
-        struct report report = {{0}, NULL, NULL};
+        struct report report = {.host = NULL};
         char path[TEMPORARY_CAPACITY + 300], copy[TEMPORARY_CAPACITY + 300];
         const struct raster_layout layout = {SIDE, SIDE, 1, formats[i].type};
         snprintf(path, sizeof path, "%s", temporary_file(*state, formats[i].name));
@@ -114,7 +114,7 @@ IN_FOLDER(test_a_disk_under_the_decoder)
 {
     static float pixels[SIDE * SIDE];
     static const struct raster_layout layout = {SIDE, SIDE, 1, PIXEL_FLOAT32};
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     char path[TEMPORARY_CAPACITY + 300], number[24];
     snprintf(path, sizeof path, "%s", temporary_file(*state, "a.h5"));
     const char *copy = temporary_file(*state, "copy.h5");

@@ -57,7 +57,7 @@ static void fill_pixels(float pixels[ROWS * COLUMNS])
 static void write_image(const char *path)
 {
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     float pixels[ROWS * COLUMNS];
     fill_pixels(pixels);
     EXPECT_OK(&report, raster_format_write(&report, path, &layout, NULL, 0, pixels));

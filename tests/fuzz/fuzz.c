@@ -74,7 +74,7 @@ static void expect(sonject_status status, const struct report *report, bool has_
 /* Reads a scene whose targets are in ../targets. */
 static void read_scene(const char *text)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct scene scene;
     const struct scene_source source = {.path = "scenes/fuzz.yaml", .text = text};
     scene_init(&scene);
@@ -106,7 +106,7 @@ static void fuzz_target(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
 /* Reads the same file as a campaign's table of bodies. */
 static void read_bodies(void)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct distribution bodies;
     struct tree tree;
     const struct tree_node name = {.kind = TREE_TEXT, .text = (char *)"fuzz.csv"};
@@ -125,7 +125,7 @@ static void fuzz_table(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
 {
     static const struct table_format format = {
         .names = {"depth", "time", "speed", "other"}, .samples_max = 100, .bytes_max = 4000};
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct number_table table;
     (void)fuzzer;
     put_file("fuzz.csv", bytes, count);
@@ -151,7 +151,7 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
                                            {"voc/a.xml", "voc"}};
     (void)fuzzer;
     for (size_t i = 0; i < COUNT(files); i++) {
-        struct report report = {{0}, NULL, NULL};
+        struct report report = {.host = NULL};
         struct contact_set set;
         put_file(files[i][0], bytes, count);
         const struct contact_choice choice = {.part = LABELLED_BOTH};
@@ -172,7 +172,7 @@ static void fuzz_labels(const struct fuzzer *fuzzer, const uint8_t *bytes, size_
 /* Makes a hierarchy of a mesh file's bytes. */
 static void fuzz_mesh(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t count)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct mesh_soup soup = {.report = &report, .path = "fuzz"};
     struct mesh mesh = {0};
     char *text = text_of(bytes, count);
@@ -215,7 +215,7 @@ static void expect_inside(const struct swath_file *file, size_t bytes)
 
 static void read_all(struct swath_file *file)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     const struct region whole = {0, 0, file->layout.rows, file->layout.columns};
     size_t size;
     if (!region_bytes(&file->layout, &whole, &size))
@@ -237,7 +237,7 @@ static void fuzz_swath(const struct fuzzer *fuzzer, const uint8_t *bytes, size_t
                                        SONJECT_CHANNEL_PORT, 1};
     put_file("fuzz.swath", bytes, count);
     for (int i = 0; i < 4; i++) {
-        struct report report = {{0}, NULL, NULL};
+        struct report report = {.host = NULL};
         if ((i == 1 && !fuzzer->format->has_names) || (i > 1 && !fuzzer->format->has_channels))
             continue;
         struct swath_file *file = allocate_array(1, sizeof *file);

@@ -9,7 +9,7 @@
 static struct temporary_folder *folder;
 static struct decoder decoder;
 static const struct report_host host = {.decoder = &decoder};
-static struct report report = {{0}, NULL, &host};
+static struct report report = {.host = &host};
 
 /* Returns the path of a file in the folder, valid while eight others are asked for. */
 static inline const char *file_in(const char *name)

@@ -12,7 +12,7 @@
 static inline float *make_plain_seabed(uint32_t rows, uint32_t columns, double shape,
                                        double row_width, double column_width, uint64_t seed)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct scene scene;
     float *pixels = calloc((size_t)rows * columns, sizeof *pixels);
     assert_non_null(pixels);

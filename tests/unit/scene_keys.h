@@ -408,7 +408,7 @@ static const struct key_case {
 /* Returns all keys, for json_decref. */
 static inline json_t *list_keys(void)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     char *text;
     assert_int_equal(section_keys_json(&report, &scene_section, &text), SONJECT_OK);
     json_t *keys = json_loads(text, 0, NULL);

@@ -9,7 +9,7 @@
 
 static void read_text_of(const char *text, struct distribution *distribution)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct tree tree;
     tree_init(&tree, &report, "test.yaml");
     struct reader reader = {.report = &report, .tree = &tree};
@@ -147,7 +147,7 @@ static bool is_clear(const struct campaign *campaign, const struct region *box, 
 /* Checks places for images. quality: of a JPEG, whose images begin at blocks; 0: no JPEG. */
 static void check_places(int quality)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct region boxes[] = {{25, 40, 5, 7}, {0, 0, 2, 2}, {58, 0, 99, 3}};
     struct avoided_box avoided[] = {{{0, 0, 0, 0}, {6.25, 7.25}, {40.0, 43.0}}, /* boxes[0] in m */
                                     {boxes[1], {NAN, NAN}, {NAN, NAN}},

@@ -42,7 +42,7 @@ TEST(test_values_are_allowed)
 {
     const char *name;
     for (uint32_t i = 0; (name = material_name(i)); i++) {
-        struct report report = {{0}, NULL, NULL};
+        struct report report = {.host = NULL};
         struct check check = {&report, NULL, SONJECT_OK};
         const sonject_material_params material = take(name);
         expect_sound(name, &material_section, &material);

@@ -85,7 +85,7 @@ TEST(test_hostile_keys)
 TEST(test_interpolation)
 {
     double x[9], real_part[9], imaginary_part[9];
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct response_table table;
     memset(&table, 0, sizeof table);
     for (int i = 0; i < 9; i++) {
@@ -123,7 +123,7 @@ TEST(test_normalisation)
     const double x[] = {-1.0, 0.0, 0.5, 1.0};
     const double real_part[] = {1.0, 3.0, 0.0, 0.0};
     const double imaginary_part[] = {0.0, -4.0, 2.5, 0.0};
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct response_table table;
     memset(&table, 0, sizeof table);
     assert_int_equal(response_table_set(&table, &report, x, real_part, imaginary_part, 4, false),

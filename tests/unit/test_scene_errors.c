@@ -357,7 +357,7 @@ TEST(test_overrides_that_are_wrong)
 
 TEST(test_a_missing_file_is_named)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct scene scene;
     scene_init(&scene);
     assert_int_equal(read_scene_file(&report, "/tmp/absent-scene.yaml", NULL, 0, &scene),

@@ -5,7 +5,7 @@
 
 static void hash_of(const struct scene *scene, const char *identity, char text[HASH_TEXT_CAPACITY])
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     assert_int_equal(scene_hash(&report, scene, identity, text), SONJECT_OK);
 }
 
@@ -92,7 +92,7 @@ TEST(test_every_key_counts)
 TEST(test_what_no_key_names_counts)
 {
     const double numbers[] = {-2.0, -1.0, 1.0, 2.0};
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct scene scene;
     sonject_object_params object;
     char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];

@@ -112,7 +112,7 @@ TEST(test_meshes_are_shared)
 /* Reads a scene of one mesh from the store, which gets it back. Returns the mesh's vertices. */
 static const float *read_stored(struct mesh_store *store, const char *keys)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct scene scene;
     char text[512];
     snprintf(text, sizeof text, SCENE "  - {shape: mesh, mesh: %s}\n", keys);
@@ -248,7 +248,7 @@ TEST(test_a_size_that_no_target_has_asks_for_the_unit)
 
 static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     assert_int_equal(scene_hash(&report, scene, NULL, text), SONJECT_OK);
 }
 

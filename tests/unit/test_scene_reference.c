@@ -195,7 +195,7 @@ static const struct reference {
 /* Returns a whole reference. The caller frees it. */
 static char *make_reference(const struct reference *reference)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     char *listed, *text = NULL;
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);

@@ -107,7 +107,7 @@ TEST(test_lambert_is_that_at_the_angle)
 /* In a patch from range 0 on, the seabed lies behind the bottom's first return. */
 TEST(test_lambert_is_that_of_the_seabed_in_view)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     static struct water_layer layer = {0.0, 1500.0, 1.0};
     static const struct water water = {&layer, 1, 1, 1500.0};
     static const double first_m[] = {0.0, 12.0};

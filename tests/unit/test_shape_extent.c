@@ -132,7 +132,7 @@ TEST(test_bounding_radius)
 
 static void make_view(struct patch_view *view, struct scene *scene, sonject_side side)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     static struct water_layer layer = {0.0, 1500.0, 1.0};
     static const struct water water = {&layer, 1, 1, 1500.0};
     scene_init(scene);
@@ -184,7 +184,7 @@ TEST(test_objects_rest_on_the_seabed)
 {
     for (int side = 0; side < 2; side++)
         for (int i = 0; i < 3 * solid_row_count; i++) {
-            struct report report = {{0}, NULL, NULL};
+            struct report report = {.host = NULL};
             struct patch_view view;
             struct scene scene;
             struct placement placement;
@@ -213,7 +213,7 @@ TEST(test_objects_rest_on_the_seabed)
 
 TEST(test_nothing_stands_prouder_than_it_is_high)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct patch_view view;
     struct scene scene;
     struct placement placement;
@@ -234,7 +234,7 @@ TEST(test_nothing_stands_prouder_than_it_is_high)
 
 static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct mesh_options options;
     mesh_options_init(&options);
     EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,

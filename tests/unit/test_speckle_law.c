@@ -61,7 +61,7 @@ TEST(a_nadir_lies_between_both_first_returns)
         COLUMNS = 400,
         NADIR = 190
     };
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {.host = NULL};
     struct first_returns returns;
     float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
     for (int row = 0; row < ROWS; row++)

@@ -173,7 +173,7 @@ CLEAN(a_patch_is_all_that_changes_here_and_in_a_child)
     static struct draft draft, backs[2];
     struct decoder own = {.is_in_process = true};
     const struct report_host alone = {.decoder = &own};
-    struct report here = {{0}, NULL, &alone};
+    struct report here = {.host = &alone};
     struct kind kind;
     for (size_t i = 0; next_kind(i, &kind); i++) {
         const char *path = file_in(kind.name);

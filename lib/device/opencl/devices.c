@@ -309,7 +309,7 @@ static sonject_status check_abilities(struct report *report, struct device *devi
 
 void opencl_close(struct device *device)
 {
-    struct report ignored = {{0}, NULL, NULL};
+    struct report ignored = {.host = NULL};
     if (!device->shared || driver_enter(&ignored) != SONJECT_OK)
         return;
     if (device->queue)
