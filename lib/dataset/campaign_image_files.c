@@ -72,9 +72,10 @@ static bool is_grey(const struct sonject_campaign *campaign)
     return !isnan(campaign->campaign.grey_db[0]);
 }
 
-static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
-                                   struct swath *swath, struct injection_result *result,
-                                   int quality, const char *path)
+/* noting: where grey levels that suit few pixels are told, or NULL. */
+static sonject_status write_pixels(struct sonject_campaign *campaign, struct report *noting,
+                                   const struct scene *scene, struct swath *swath,
+                                   struct injection_result *result, int quality, const char *path)
 {
     static const char *const complex_names[] = {"real", "imag"};
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
@@ -88,7 +89,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     struct raster_layout layout = swath->layout;
     const char *const *names = swath->is_complex ? complex_names : NULL;
     if (is_grey(campaign)) {
-        attributes[count++] = raster_make_grey(campaign->report, &layout, stored, swath->full_scale,
+        attributes[count++] = raster_make_grey(noting, &layout, stored, swath->full_scale,
                                                campaign->campaign.grey_db, ends);
         names = NULL;
     }
@@ -189,8 +190,8 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
         [OUTPUT_ENERGY] = LAYER_ENERGY,       [OUTPUT_FIELD] = LAYER_FIELD};
     switch (output) {
     case OUTPUT_IMAGE:
-        return write_pixels(campaign, &parts->scene, &parts->swath, result, facts.jpeg_quality,
-                            path);
+        return write_pixels(campaign, image->plan.id == 0 ? report : NULL, &parts->scene,
+                            &parts->swath, result, facts.jpeg_quality, path);
     case OUTPUT_TRUTH:
         return write_truth(report, &facts, path);
     case OUTPUT_YOLO:

@@ -44,7 +44,7 @@ struct raster_attribute raster_make_grey(struct report *report, struct raster_la
         white += share >= 1.0;
         black += share <= 0.0;
     }
-    if (2 * white > count || 2 * black > count)
+    if (report && (2 * white > count || 2 * black > count))
         report_note(report,
                     "%.0f %% of the pixels are %s at grey levels of %g to %g dB: levels are over "
                     "full scale, %g here; sonject quicklook shows which suit",

@@ -19,8 +19,8 @@ struct raster_attribute {
 #define GREY_TEXT      64 /* bytes of the attribute's value */
 
 /* Converts pixels in place to 8 bit grey levels in dB. ends_db: black and white over full_scale.
- * Notes if most pixels are white or black. Returns an attribute that tells the levels, with the
- * value `text`. */
+ * Notes if most pixels are white or black, unless report is NULL. Returns an attribute that tells
+ * the levels, with the value `text`. */
 struct raster_attribute raster_make_grey(struct report *report, struct raster_layout *layout,
                                          void *pixels, double full_scale, const double ends_db[2],
                                          char text[GREY_TEXT]);

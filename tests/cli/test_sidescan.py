@@ -151,6 +151,10 @@ def test_grey_images_are_the_line_as_it_is_converted(sonject, tmp_path, line):
         assert numpy.array_equal(image[influence == 0], of_line[influence == 0])
         changed += (image != of_line).sum()
     assert changed > 12 * 20
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN + "grey: [-90 dB, -60 dB]\n")
+    told = sonject.done("campaign", "campaign.yaml", "-o", "white").stderr
+    assert told.count("of the pixels are white at grey levels of -90 to -60 dB") == 1
+    (tmp_path / "campaign.yaml").write_text(text)
     (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "data/all/images/00000000.png,4,9,5,20\n" * 12)
     assert_refused(sonject("fit", "campaign.yaml", "contacts.csv", "-o", "fitted.yaml"), 3, "00000000.png: was made with grey: [-50 dB, -20 dB]")
     for more, words in ("grey: [-20 dB, -50 dB]", "black must be below white"), ("grey: -50 dB", "must be two levels"), (
