@@ -414,3 +414,16 @@ def test_ground_range_is_drawn_of_what_tells_its_slant_range(sonject, tmp_path):
         sonject.done("quicklook", name, "-o", f"{name}.png")
     # the same pixels, once with axes in metres
     assert (tmp_path / "ground.tif.png").read_bytes() != (tmp_path / "bare.npy.png").read_bytes()
+
+
+def test_a_geometry_that_is_not_the_files_is_told(sonject, tmp_path):
+    sonject.done("seabed", "-o", "swath.tif", "--rows=64", "--columns=96", "--row-spacing=5cm", "--column-spacing=5cm", "--first-range=20m")
+    scene = ("sonject: 1\ninput: {path: swath.tif, geometry: %s}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 8 m}\n"
+             "objects: [{shape: sphere, diameter: 40 cm}]\n")
+    for geometry, is_told in (("from_file", False), ("{row_spacing: 5.1 cm, column_spacing: 5 cm, first_slant_range: 20 m}", False),
+                              ("{row_spacing: 10 cm, column_spacing: 5 cm, first_slant_range: 20 m}", True),
+                              ("{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m}", True)):
+        (tmp_path / "scene.yaml").write_text(scene % geometry)
+        for told in (sonject.done("check", "scene.yaml").stdout,
+                     sonject.done("run", "scene.yaml", "-o", "out", "--overwrite").stderr):
+            assert ("swath.tif tells other spacings and ranges than the scene" in told) == is_told
