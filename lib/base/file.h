@@ -38,7 +38,7 @@ char *file_part_name(const char *path);
  * stay: whether their processes live is unknown here. Never fails. */
 void folder_tidy(const char *path);
 
-/* Remembers a file that the call reads, which no result may replace. */
+/* Remembers a file that the call reads, which no result may replace. The last INPUTS_KEPT count. */
 void file_protect(struct report *report, const char *path);
 
 /* Refuses a path that leads to a protected file. Errors: ARGUMENT. */
