@@ -24,7 +24,11 @@ static inline bool open_temporary_folder(struct temporary_folder *folder)
     const char *temporary = getenv("TMPDIR");
     snprintf(folder->path, sizeof folder->path, "%s/sonject-test-XXXXXX",
              temporary ? temporary : "/tmp");
+#ifdef HAS_POSIX
     return mkdtemp(folder->path) != NULL;
+#else
+    return mkdir(mktemp(folder->path)) == 0;
+#endif
 }
 
 static inline bool is_entry(const struct dirent *entry)
@@ -89,12 +93,9 @@ static inline const char *temporary_file(struct temporary_folder *folder, const 
     return folder->file;
 }
 
-/* Returns a whole file with a 0 behind it. The caller frees the copy. */
-static inline unsigned char *bytes_of_file(const char *path, size_t *count)
+/* Closes a file, and returns all its bytes with a 0 behind them. The caller frees the copy. */
+static inline unsigned char *bytes_of_stream(FILE *file, size_t *count)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        fail_msg("%s is not there", path);
     assert_int_equal(fseek(file, 0, SEEK_END), 0);
     *count = (size_t)ftell(file);
     rewind(file);
@@ -103,6 +104,14 @@ static inline unsigned char *bytes_of_file(const char *path, size_t *count)
     assert_int_equal(fread(bytes, 1, *count, file), *count);
     fclose(file);
     return bytes;
+}
+
+static inline unsigned char *bytes_of_file(const char *path, size_t *count)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s is not there", path);
+    return bytes_of_stream(file, count);
 }
 
 static inline void write_bytes(const char *path, const void *bytes, size_t count)

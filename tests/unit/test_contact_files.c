@@ -1,8 +1,7 @@
 /* Tests labels of contacts: each format, as others and sonject itself write it, highlights and
  * shadows of one contact, and wrong labels. Images have 30 rows and 40 columns. */
-#include <sys/stat.h>
-
 #include "base/report.h"
+#include "base/system/file_system.h"
 #include "claims.h"
 #include "clean_folder.h"
 #include "dataset/contact_files.h"
@@ -85,7 +84,7 @@ static int make_labels_folder(void **state)
     if (begin(state) != 0)
         return 1;
     strcat(folder->path, "/labels");
-    return mkdir(folder->path, 0700);
+    return folder_make_one(folder->path);
 }
 
 static int remove_labels_folder(void **state)
@@ -199,21 +198,31 @@ WITH_LABELS(test_coco_that_is_wrong)
 
 /* ---- CSV. */
 
+/* A mark in a file's name, and the same within quotation marks. */
+#ifdef HAS_POSIX
+#define MARK        "\""
+#define QUOTED_MARK "\"\""
+#else
+#define MARK        "'"
+#define QUOTED_MARK "'"
+#endif
+
 WITH_LABELS(test_tables)
 {
-    const struct expected expected[] = {{"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
-                                        {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
-                                        {"/a.npy", LABELLED_HIGHLIGHT, {9, 2, 3, 4}},
-                                        {"/b \"2\", 3.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
+    const struct expected expected[] = {
+        {"/a.npy", LABELLED_SHADOW, {1, 2, 3, 4}},
+        {"/a.npy", LABELLED_BOTH, {6, 2, 3, 4}},
+        {"/a.npy", LABELLED_HIGHLIGHT, {9, 2, 3, 4}},
+        {"/b " MARK "2" MARK ", 3.npy", LABELLED_HIGHLIGHT, {0, 0, 1, 500}}};
     put_image("a.npy");
-    put_image("b \"2\", 3.npy");
+    put_image("b " MARK "2" MARK ", 3.npy");
     put("labels.csv", "image,row,column,rows,columns,part # comment\n\n"
                       "a.npy,9,2,3,4,\na.npy,0.6,2.3,3,4,Shadow\n\"a.npy\",6,2,3,4,both\n"
-                      "\"b \"\"2\"\", 3.npy\",0,0,1,500,\"highlight\"\n");
+                      "\"b " QUOTED_MARK "2" QUOTED_MARK ", 3.npy\",0,0,1,500,\"highlight\"\n");
     expect_contacts("labels.csv", LABELLED_HIGHLIGHT, expected, COUNT(expected));
     put("labels.CSV",
         "class;rows;columns;row;column;image\nshadow;3;4;1;2;a.npy\nechoes and shadows;3;4;6;2;"
-        "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b \"2\", 3.npy\n");
+        "a.npy\nrock;3;4;9;2;a.npy\n;1;500;0;0;b " MARK "2" MARK ", 3.npy\n");
     expect_contacts("labels.CSV", LABELLED_HIGHLIGHT, expected, COUNT(expected));
 }
 
@@ -362,7 +371,7 @@ WITH_LABELS(test_where_images_are_looked_for)
     static const char *const labels[] = {"labels/train/a.txt", "labels/train/l.csv"};
     struct expected expected = {NULL, LABELLED_BOTH, {3, 8, 6, 8}};
     for (size_t i = 0; i < COUNT(folders); i++)
-        assert_int_equal(mkdir(file_in(folders[i]), 0700), 0);
+        assert_int_equal(folder_make_one(file_in(folders[i])), 0);
     put(labels[0], "0 0.3 0.2 0.2 0.2\n");
     put(labels[1], "image,row,column,rows,columns\na.npy,3,8,6,8\n");
     for (size_t i = 0; i < COUNT(places); i++) {

@@ -3,13 +3,16 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#ifdef HAS_POSIX
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#endif
 
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/sha256.h"
+#include "base/system/child.h"
 #include "clean_folder.h"
 
 static void expect_text(char *text, const char *expected)
@@ -114,6 +117,7 @@ CLEAN(test_what_cannot_be_read_or_written)
     expect_message(path, "No such file");
 }
 
+#ifdef HAS_POSIX
 /* A limit on the size of files is as near as a test gets to a full disk. */
 CLEAN(test_a_full_disk_leaves_the_old_file)
 {
@@ -138,6 +142,7 @@ CLEAN(test_a_full_disk_leaves_the_old_file)
     assert_memory_equal(bytes, "old", 3);
     free(bytes);
 }
+#endif
 
 CLEAN(test_publishing)
 {
@@ -159,22 +164,37 @@ CLEAN(test_publishing)
     free(part);
 }
 
-/* Returns the name of a part whose process, a child, has ended. The caller frees it. */
+static const char *this_program;
+
+static bool hear_part(void *part, const char *name)
+{
+    *(char **)part = strdup(name);
+    return true;
+}
+
+/* Has this program, as a child, make a part, and waits for its end. Returns the part's path, for
+ * free(). The folder must be empty. */
 static char *orphaned_part(const char *path)
 {
-    char name[TEMPORARY_CAPACITY + 400] = "";
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0) {
-        char *part = file_part_name(path);
-        _exit(part && write(ends[1], part, strlen(part) + 1) > 0 ? 0 : 1);
-    }
-    assert_int_equal(waitpid(child, NULL, 0), child);
-    assert_true(read(ends[0], name, sizeof name - 1) > 0);
-    close(ends[0]);
-    close(ends[1]);
-    return strdup(name);
+    struct child child = {0};
+    char byte, *name = NULL;
+    assert_int_equal(child_start(&child, this_program, path, UINT64_C(1) << 30, 10), 0);
+    while (channel_receive(&child.channel, &byte, 1) != 0)
+        continue;
+    child_stop(&child);
+    assert_int_equal(folder_hear_names(folder->path, hear_part, &name), 0);
+    assert_non_null(name);
+    char *part = path_join(folder->path, name);
+    free(name);
+    return part;
+}
+
+static int leave_part(const char *path)
+{
+    char *part = file_part_name(path);
+    write_bytes(part, "", 0);
+    free(part);
+    return 0;
 }
 
 CLEAN(test_only_parts_of_dead_processes_are_tidied_away)
@@ -185,7 +205,7 @@ CLEAN(test_only_parts_of_dead_processes_are_tidied_away)
     elsewhere[strlen(path) + 1] = elsewhere[strlen(path) + 1] == '0' ? '1' : '0';
     char *own = file_part_name(path);
     const char *kept[] = {own, path, elsewhere};
-    write_bytes(orphan, "", 0);
+    assert_true(file_exists(orphan));
     for (size_t i = 0; i < COUNT(kept); i++)
         write_bytes(kept[i], "", 0);
     folder_tidy(folder->path);
@@ -204,6 +224,7 @@ static bool holds(const json_t *entry, const char *path, bool hashes_all)
     return is_same;
 }
 
+#ifdef HAS_POSIX
 /* Changes the first byte of a file, and keeps the file's time if told to. */
 static void alter(const char *path, bool keeps_time)
 {
@@ -244,6 +265,7 @@ CLEAN(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too)
         json_decref(entry);
     }
 }
+#endif
 
 CLEAN(test_a_list_of_files_reaches_nothing_outside_of_its_folder)
 {
@@ -304,4 +326,9 @@ CLEAN(test_sha256_is_that_of_the_standard)
     assert_int_equal(file_sha256(&report, file_in("absent"), digest), SONJECT_ERROR_STORAGE);
 }
 
-TEST_PROGRAM(NULL, NULL)
+/* With a path, the program is the child of a test. */
+int main(int count, char **arguments)
+{
+    this_program = arguments[0];
+    return count > 1 ? leave_part(arguments[1]) : run_own_tests(NULL, NULL);
+}

@@ -133,18 +133,24 @@ static void write_ply_binary(FILE *draft, const struct mesh_sample *sample, int 
     }
 }
 
-static FILE *begin_draft(struct draft *draft)
+static FILE *begin_draft(void)
 {
-    FILE *out = open_memstream(&draft->bytes, &draft->count);
+    FILE *out = tmpfile();
     assert_non_null(out);
     return out;
+}
+
+static struct draft end_draft(FILE *out)
+{
+    struct draft draft;
+    draft.bytes = (char *)bytes_of_stream(out, &draft.count);
+    return draft;
 }
 
 /* Returns the sample in a format. The caller frees the bytes. */
 static struct draft write_format(enum format format, const struct mesh_sample *sample)
 {
-    struct draft draft;
-    FILE *out = begin_draft(&draft);
+    FILE *out = begin_draft();
     if (format == STL_TEXT)
         write_stl_text(out, sample);
     else if (format == STL_BINARY)
@@ -155,8 +161,7 @@ static struct draft write_format(enum format format, const struct mesh_sample *s
         write_ply_text(out, sample);
     else
         write_ply_binary(out, sample, format == PLY_BIG);
-    assert_int_equal(fclose(out), 0);
-    return draft;
+    return end_draft(out);
 }
 
 /* ---- files that are read, or end too soon ---- */
@@ -491,15 +496,14 @@ TEST(test_dense_files)
 {
     static const char *const corners[] = {" 1", " 2", " 3", " 4"};
     for (int kind = 0; kind < 3; kind++) {
-        struct draft draft;
-        FILE *out = begin_draft(&draft);
+        FILE *out = begin_draft();
         fprintf(out, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf");
         for (size_t i = 0; i < 20000; i++) {
             const size_t corner = kind == 0 ? 0 : kind == 1 ? i % 3 : throw(4);
             fputs(corners[corner], out);
         }
         fprintf(out, "\n");
-        assert_int_equal(fclose(out), 0);
+        const struct draft draft = end_draft(out);
         const sonject_status status =
             expect_taken_or_explained("dense.obj", draft.bytes, draft.count);
         assert_int_equal(status, kind == 0 ? SONJECT_ERROR_INPUT : SONJECT_OK);
@@ -516,8 +520,7 @@ TEST(test_promises)
     for (size_t i = 0; i < COUNT(counts); i++)
         for (size_t format = 0; format < 3; format++)
             for (int of_faces = 0; of_faces < 2; of_faces++) {
-                struct draft draft;
-                FILE *out = begin_draft(&draft);
+                FILE *out = begin_draft();
                 fprintf(out,
                         "ply\nformat %s 1.0\nelement nothing %s\nelement vertex %s\n"
                         "property char x\nproperty char y\nproperty char z\nelement face %s\n"
@@ -526,7 +529,7 @@ TEST(test_promises)
                         of_faces ? counts[i] : "1");
                 for (int byte = 0; byte < 500; byte++)
                     fputs(format == 0 ? "1 " : "\1", out);
-                assert_int_equal(fclose(out), 0);
+                const struct draft draft = end_draft(out);
                 assert_int_equal(expect_taken_or_explained("promise.ply", draft.bytes, draft.count),
                                  SONJECT_ERROR_INPUT);
                 free(draft.bytes);

@@ -4,7 +4,9 @@
 #include <fenv.h>
 #include <pthread.h>
 #include <sched.h>
+#ifdef HAS_POSIX
 #include <sys/wait.h>
+#endif
 #include <time.h>
 #include <unistd.h>
 
@@ -129,7 +131,7 @@ TEST(test_each_work_item_runs_once_beside_other_hosts)
 }
 
 /* Locks of sanitizers, and of QEMU, do not survive the fork. */
-#if !defined IS_SANITIZED && !defined IS_EMULATED
+#if defined HAS_POSIX && !defined IS_SANITIZED && !defined IS_EMULATED
 /* Lets two work-items wait for each other, and so for a second thread. */
 static void meet(const struct kernel_argument *arguments, const size_t *global, size_t first,
                  size_t end)

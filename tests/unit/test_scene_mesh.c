@@ -1,8 +1,10 @@
 /* Tests meshes in scene files: how their numbers are meant, that one is kept however many shapes
  * show it, and messages about meshes that cannot be read. */
+#include "claims.h"
+
 #include <sys/stat.h>
 
-#include "claims.h"
+#include "base/system/file_system.h"
 #include "inject/scene_hash.h"
 #include "scene_folder.h"
 
@@ -93,7 +95,7 @@ TEST(test_meshes_are_shared)
               "      - {shape: mesh, mesh: {file: parts/corner.obj, unit: cm}}\n"
               "  - {shape: mesh, mesh: {file: parts/corner.obj, smooth: 40 deg}}\n"
               "  - {shape: mesh, mesh: {file: parts/copy.obj, up: z}}\n";
-    assert_int_equal(mkdir(file_in("parts"), 0777), 0);
+    assert_int_equal(folder_make_one(file_in("parts")), 0);
     write_file("parts/corner.obj", corner, sizeof corner - 1);
     write_file("parts/copy.obj", corner, sizeof corner - 1);
     write_file("parts/target.yaml", target, sizeof target - 1);
@@ -190,10 +192,12 @@ TEST(test_meshes_that_cannot_be_read)
 {
     static const char binary[84 + 50] = {[80] = 2};
     expect_bad_mesh("absent.obj", SONJECT_ERROR_INPUT, "there is no file");
-    assert_int_equal(mkdir(file_in("folder.stl"), 0777), 0);
+    assert_int_equal(folder_make_one(file_in("folder.stl")), 0);
     expect_bad_mesh("folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
+#ifdef HAS_POSIX
     assert_int_equal(mkfifo(file_in("pipe.stl"), 0666), 0);
     expect_bad_mesh("pipe.stl", SONJECT_ERROR_INPUT, "not a regular file");
+#endif
     write_file("a.stl", binary, sizeof binary);
     expect_bad_mesh("a.stl", SONJECT_ERROR_INPUT, "the header says 2 triangles, the file holds 1");
 }

@@ -6,6 +6,7 @@
 #include "dataset/campaign.h"
 #include "scene/shapes/shape.h"
 #include "schema/scene_file.h"
+#include "temporary_folder.h"
 
 #define PART_PREFIX "objects[].parts[]."
 
@@ -196,17 +197,16 @@ static const struct reference {
 static char *make_reference(const struct reference *reference)
 {
     struct report report = {.host = NULL};
-    char *listed, *text = NULL;
-    size_t bytes = 0;
-    FILE *out = open_memstream(&text, &bytes);
+    char *listed;
+    size_t bytes;
+    FILE *out = tmpfile();
     assert_int_equal(section_keys_json(&report, reference->section, &listed), SONJECT_OK);
     json_t *keys = json_loads(listed, 0, NULL);
     assert_true(out && json_is_array(keys));
     reference->print(out, keys);
-    assert_int_equal(fclose(out), 0);
     json_decref(keys);
     free(listed);
-    return text;
+    return (char *)bytes_of_stream(out, &bytes);
 }
 
 static void check_reference(const struct reference *reference)

@@ -1,6 +1,7 @@
 /* Tests files of tallies: sums are read as written, damaged files are refused, chains of
  * checkpoints cover a shard once, and sums that do not go together are not added up. */
 #include "base/file.h"
+#include "base/system/file_system.h"
 #include "claims.h"
 #include "clean_folder.h"
 #include "trace/checkpoint.h"
@@ -94,7 +95,7 @@ CLEAN(test_what_is_written_is_read)
     assert_memory_equal(&file.head, &head, sizeof head);
     assert_string_equal(file.scene.path, source.path);
     assert_string_equal(file.scene.text, source.text);
-    assert_int_equal(file.scene.folder[0], '/');
+    assert_true(path_is_absolute(file.scene.folder));
     assert_int_equal(file.scene.override_count, 2);
     for (size_t i = 0; i < 2; i++)
         assert_string_equal(file.scene.overrides[i], overrides[i]);

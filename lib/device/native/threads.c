@@ -62,6 +62,7 @@ static void run_items(void *job_to_run)
     fenv_t before;
     fegetenv(&before);
     fesetenv(FE_DFL_ENV);
+    fesetround(FE_TONEAREST); /* Wine's default environment keeps the host's rounding */
     while (begin_items(job, &first, &end))
         job->run(job->arguments, job->global, first, end);
     fesetenv(&before);
