@@ -160,10 +160,13 @@ static void add_input(FILE *file, const struct interview *interview)
             answer_about(interview, "input.geometry.first_slant_range"),
             interview->is_reversed ? "of the nadir column" : "of column 0");
     add_key(file, "    ", "nadir_column", answer_about(interview, "input.geometry.nadir_column"),
-            "the last column: range grows to the left");
+            interview->has_nadir ? "range grows to both sides"
+                                 : "the last column: range grows to the left");
     add_key(file, "    ", "side", answer_about(interview, "input.geometry.side"),
             interview->is_reversed ? "left of the nadir column"
-                                   : "of the nadir column, which is in the calibration");
+            : answer_about(interview, "input.geometry.nadir_column")
+                ? "of the nadir column"
+                : "of the nadir column, which is in the calibration");
 }
 
 static void add_sonar(FILE *file, const struct interview *interview)

@@ -27,7 +27,7 @@ static const struct question column_spacing = {
 static const struct question first_range = {
     "input.geometry.first_slant_range",
     "slant range of the first column (such as 30 m); if range grows to the left, of the last "
-    "column (such as 30 m left)",
+    "column (such as 30 m left); of two sides, the column of the nadir (such as nadir 512)",
     NULL};
 static const struct question side = {
     "input.geometry.side", "side of the track to put targets into, port or starboard", "port"};
@@ -152,10 +152,61 @@ static void add_reversed(struct interview *interview)
     snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.side=port");
 }
 
+/* Returns the reason why a scene with the answers so far cannot be read. */
+static const char *problem_of(const struct interview *interview)
+{
+    const char *problem = sonject_context_message(interview->context);
+    const char *rest = strstr(problem, ": ");
+    return rest ? rest + 2 : problem;
+}
+
+/* Takes the column of the nadir between two sides as an answer. Returns NULL, or why it is not
+ * possible. */
+static const char *take_nadir(struct interview *interview, const char *column)
+{
+    const size_t before = interview->count;
+    snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.nadir_column=%s",
+             column);
+    snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.side=port");
+    const bool is_read = is_possible(interview);
+    interview->count = before;
+    if (!is_read)
+        return problem_of(interview);
+    interview->nadir_column = strtod(column, NULL);
+    if (!(interview->nadir_column < interview->columns - 1.0))
+        return "the image has no columns to the right of it";
+    interview->has_nadir = true;
+    interview->count++; /* the side is asked for */
+    return NULL;
+}
+
+/* Takes an answer. Returns NULL, or why it is not possible. */
+static const char *take(struct interview *interview, const struct question *question,
+                        const char *value)
+{
+    static const char nadir[] = "nadir ";
+    char converted[ANSWER];
+    if (question == &first_range && strncmp(value, nadir, sizeof nadir - 1) == 0)
+        return take_nadir(interview, value + sizeof nadir - 1);
+    if (question == &array_length)
+        value = length_of_beam(interview, value, converted);
+    if (question == &first_range)
+        value = length_of_range(value, converted, &interview->is_reversed);
+    const int length =
+        snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
+    if (length >= ANSWER || !is_possible(interview)) {
+        interview->count--;
+        return length < ANSWER ? problem_of(interview) : "too long";
+    }
+    if (question == &first_range && interview->is_reversed)
+        add_reversed(interview);
+    return NULL;
+}
+
 /* Asks until the answer is possible. Returns false after a message if the input ends. */
 static bool ask(struct interview *interview, const struct question *question)
 {
-    char line[ANSWER], converted[ANSWER];
+    char line[ANSWER];
     for (;;) {
         const bool has_usual = question->usual && *question->usual;
         fprintf(stderr, "%s%s%s%s: ", question->text, has_usual ? " [" : "",
@@ -173,23 +224,12 @@ static bool ask(struct interview *interview, const struct question *question)
                 return true; /* an empty answer is allowed */
             value = question->usual;
         }
-        if (question == &array_length)
-            value = length_of_beam(interview, value, converted);
-        if (question == &first_range)
-            value = length_of_range(value, converted, &interview->is_reversed);
-        const int length =
-            snprintf(interview->answers[interview->count++], ANSWER, "%s=%s", question->key, value);
-        if (*value && length < ANSWER && is_possible(interview)) {
-            if (question == &first_range && interview->is_reversed)
-                add_reversed(interview);
+        if (!*value)
+            continue;
+        const char *problem = take(interview, question, value);
+        if (!problem)
             return true;
-        }
-        interview->count--;
-        if (*value) {
-            const char *problem = sonject_context_message(interview->context);
-            const char *rest = strstr(problem, ": ");
-            message("init: the answer '", value, "': ", rest ? rest + 2 : problem);
-        }
+        message("init: the answer '", value, "': ", problem);
     }
 }
 

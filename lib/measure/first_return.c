@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/statistics.h"
 
 #define WINDOW        24   /* columns on either side of the step */
 #define ROWS_AVERAGED 2    /* neighbours on either side: 120 samples of speckle err by 0.5 dB */
@@ -12,10 +13,25 @@
 #define STEP_DB       10.0 /* least step from water to seabed */
 #define FAINTEST      1e-30f
 #define FAINTEST_DB   (-300.0)
-#define WATER_MARGIN  8.0 /* columns behind the first return that are not plain seabed yet */
-#define PROFILE_ROWS  200 /* most rows that tell where to look for the nadir */
-#define NADIR_SPREAD  4.0 /* columns; most that the middle between both sides may vary */
-#define ROWS_SHARE    0.9 /* least share of rows with a first return; shadows hide some */
+#define SAMPLES       4096 /* pixels that tell the image's median */
+#define DARKEST       1e-4 /* least intensity that counts, over the median: 40 dB below */
+#define WATER_MARGIN  8.0  /* columns behind the first return that are not plain seabed yet */
+#define PROFILE_ROWS  200  /* most rows that tell where to look for the nadir */
+#define NADIR_SPREAD  4.0  /* columns; most that the middle between both sides may vary */
+#define ROWS_SHARE    0.9  /* least share of rows with a first return; shadows hide some */
+
+/* Returns the least intensity that counts, 40 dB below the median of the pixels above 0. A lone
+ * pixel of grey level 1 among zeros would be a step to the seabed otherwise. */
+static float darkest_intensity(const float *intensity, size_t count)
+{
+    double samples[SAMPLES];
+    const size_t stride = count / SAMPLES + 1;
+    size_t found = 0;
+    for (size_t i = 0; i < count; i += stride)
+        if (intensity[i] > FAINTEST)
+            samples[found++] = (double)intensity[i];
+    return found > 0 ? fmaxf(FAINTEST, (float)(DARKEST * median_of(samples, found))) : FAINTEST;
+}
 
 /* Fills sums[j] with the sum of the levels before column j, dB, averaged over a row and its
  * neighbours. Levels are averaged, not intensities, since fish and spikes are bright. */
@@ -70,8 +86,9 @@ sonject_status find_first_return(struct report *report, const float *intensity, 
     size_t last = 0;
     size_t missing = 0;
     const bool is_complete = sums && levels;
+    const float darkest = darkest_intensity(intensity, rows * columns);
     for (size_t i = 0; is_complete && i < rows * columns; i++)
-        levels[i] = intensity[i] > FAINTEST ? 10.0f * log10f(intensity[i]) : (float)FAINTEST_DB;
+        levels[i] = 10.0f * log10f(fmaxf(darkest, intensity[i]));
     for (size_t row = 0; is_complete && row < rows; row++) {
         sum_levels(levels, rows, columns, row, sums);
         const size_t column = first_step(sums, columns);
@@ -138,11 +155,12 @@ static sonject_status find_darkest(struct report *report, const float *intensity
     const size_t stride = rows / PROFILE_ROWS + 1;
     double *profile = allocate_array(columns, 2 * sizeof *profile);
     double *sorted = profile + columns;
+    const float least = darkest_intensity(intensity, rows * columns);
     size_t darkest = first_column;
     CHECK_MEMORY(report, profile, "the water column");
     for (size_t row = 0; row < rows; row += stride)
         for (size_t column = 0; column < columns; column++)
-            profile[column] += log(fmax(FAINTEST, (double)intensity[row * columns + column]));
+            profile[column] += log((double)fmaxf(least, intensity[row * columns + column]));
     memcpy(sorted, profile, columns * sizeof *profile);
     qsort(sorted, columns, sizeof *sorted, compare_doubles);
     for (size_t column = first_column; column < end_column; column++)

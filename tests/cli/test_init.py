@@ -60,6 +60,23 @@ def test_range_may_grow_to_the_left(sonject, image):
     assert thing["slant_range_m"] == pytest.approx(44 + 0.025 * (COLUMNS - 1 - thing["column"]), abs=0.05)
 
 
+def test_a_nadir_that_was_not_found_can_be_answered(sonject, image):
+    """The image shows no water column. Range grows to both sides of the column that is named."""
+    answers = [*ANSWERS[:2], f"nadir {COLUMNS}", "nadir x", f"nadir {COLUMNS // 3}.5", "port", "2 m", *ANSWERS[4:]]
+    answer = init(sonject, "swath.npy", "--campaign", answers=answers)
+    assert answer.returncode == 0, answer.stderr
+    assert f"the answer 'nadir {COLUMNS}': the image has no columns" in answer.stderr and "the answer 'nadir x'" in answer.stderr
+    scene = image.with_suffix(".yaml").read_text()
+    for line in (f"nadir_column: {COLUMNS // 3}.5", "side: port"):
+        assert f"    {line} # " in scene
+    assert "first_slant_range" not in scene
+    campaign = (image.parent / "swath_campaign.yaml").read_text()
+    assert "set: {input.geometry.side: port}" in campaign and "set: {input.geometry.side: starboard}" in campaign
+    sonject.done("run", "swath.yaml", "-o", "out", "--set", "input.geometry.side=starboard")
+    (thing,) = json.loads((image.parent / "out" / "truth.json").read_text())["objects"]
+    assert thing["slant_range_m"] == pytest.approx(0.025 * (thing["column"] - COLUMNS // 3 - 0.5), abs=0.05)
+
+
 def test_no_answer_leaves_no_file(sonject, image):
     answer = init(sonject, "swath.npy", answers=ANSWERS[:2])
     assert answer.returncode == 2 and "no answer was given for input.geometry.first_slant_range" in answer.stderr

@@ -79,4 +79,30 @@ TEST(a_nadir_lies_between_both_first_returns)
     free(intensity);
 }
 
+/* The same in speckle, as grey levels linear in amplitude, which are 0 to 3 in the water. */
+TEST(a_nadir_is_found_where_the_water_is_nearly_black)
+{
+    enum {
+        ROWS = 60,
+        COLUMNS = 1000,
+        NADIR = 480
+    };
+    struct report report = {.host = NULL};
+    struct first_returns returns;
+    uint64_t seed = 1;
+    float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++) {
+            const double u = ((double)(next_random(&seed) >> 11) + 0.5) * 0x1p-53;
+            const double mean = abs(column - NADIR) < 250 + row / 2 ? 0.8 : 30.0;
+            const double grey = round(mean * sqrt(-log(u)));
+            intensity[row * COLUMNS + column] = (float)(grey * grey);
+        }
+    assert_int_equal(first_returns_find(&returns, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
+    assert_int_equal(returns.sides, WATER_BETWEEN);
+    assert_true(fabs(returns.nadir_column - NADIR) <= 1.0);
+    first_returns_clear(&returns);
+    free(intensity);
+}
+
 TEST_PROGRAM(NULL, NULL)
