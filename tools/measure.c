@@ -19,15 +19,10 @@ struct measure_options {
     const char *channel;
     const char *array;
     struct text_list boxes;
-    bool finds;
-    struct number_argument find_contrast;
-    struct whole_argument find_most;
     bool range_to_left;
     const char *truth;
     struct number_argument row_spacing, column_spacing;
 };
-
-#define FIND_MOST_LIMIT 100000
 
 #define MEMBER(name) offsetof(struct measure_options, name)
 
@@ -44,12 +39,6 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXTS, false, MEMBER(boxes)},
     {"--truth", NULL, "FILE", "measures the contacts of a run's truth.json", ARGUMENT_TEXT, false,
      MEMBER(truth)},
-    {"--find", NULL, NULL, "looks for contacts and measures them, the brightest first",
-     ARGUMENT_FLAG, false, MEMBER(finds)},
-    {"--find-contrast", NULL, "DB", "least contrast over the seabed, 6...100, see below (12)",
-     ARGUMENT_NUMBER, false, MEMBER(find_contrast)},
-    {"--find-most", NULL, "N", "largest number of contacts, 1...100000 (100)", ARGUMENT_WHOLE,
-     false, MEMBER(find_most)},
     {"--range-to-left", NULL, NULL,
      "range grows to the left, as in the port half of an image of two sides; --truth knows it",
      ARGUMENT_FLAG, false, MEMBER(range_to_left)},
@@ -101,7 +90,7 @@ static bool fill(const struct measure_options *options, sonject_measure_params *
 
 static bool wants_contacts(const struct measure_options *options)
 {
-    return options->boxes.count > 0 || options->truth || options->finds;
+    return options->boxes.count > 0 || options->truth;
 }
 
 /* Parses "ROW,COLUMN,ROWS,COLUMNS". */
@@ -139,8 +128,6 @@ static bool fill_contacts(const struct measure_options *options, sonject_measure
     params->truth = options->truth;
     params->boxes = boxes;
     params->box_count = (uint32_t)options->boxes.count;
-    params->find_contrast_db = options->find_contrast.value; /* 0: the default */
-    params->find_most = (uint32_t)options->find_most.value;
     params->range_to_left = options->range_to_left;
     params->row_spacing_m = options->row_spacing.value;
     params->column_spacing_m = options->column_spacing.value;
@@ -176,21 +163,11 @@ static const char *conflict(const struct measure_options *options)
 {
     const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;
     if (has_spacing && !wants_contacts(options))
-        return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";
+        return "measure: --row-spacing and --column-spacing are for --box and --truth";
     if (options->range_to_left && !wants_contacts(options))
-        return "measure: --range-to-left is for --box, --truth and --find";
+        return "measure: --range-to-left is for --box and --truth";
     if (options->labels && wants_contacts(options))
         return "measure: --targets is for the seabed's statistics, not for contacts";
-    if (options->finds && (options->truth || options->boxes.count > 0))
-        return "measure: --find cannot be used with --box or --truth";
-    if ((options->find_contrast.is_given || options->find_most.is_given) && !options->finds)
-        return "measure: --find-contrast and --find-most need --find";
-    if (options->find_contrast.is_given &&
-        !(options->find_contrast.value >= 6.0 && options->find_contrast.value <= 100.0))
-        return "measure: --find-contrast must be 6...100 dB";
-    if (options->find_most.is_given &&
-        (options->find_most.value < 1 || options->find_most.value > FIND_MOST_LIMIT))
-        return "measure: --find-most must be 1...100000";
     if ((options->row_spacing.is_given && !(options->row_spacing.value > 0.0)) ||
         (options->column_spacing.is_given && !(options->column_spacing.value > 0.0)))
         return "measure: --row-spacing and --column-spacing must be above 0";
@@ -228,12 +205,7 @@ const struct verb measure_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "--find finds contacts whose brightest mean of 3 x 3 pixels has at least "
-             "--find-contrast over\n"
-             "the seabed around, and that touch no brighter contact's box; \"left_off\" counts "
-             "those beyond\n"
-             "--find-most. Lengths have standard errors due to speckle. \"gap\" is the lit part "
-             "between\n"
+    .notes = "Lengths have standard errors due to speckle. \"gap\" is the lit part between\n"
              "highlight and shadow, such as a thick target's top; \"dim\" is the first part of the "
              "shadow, if\n"
              "brighter than the rest; \"cut\" says that the box or the image ends "

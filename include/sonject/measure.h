@@ -25,16 +25,13 @@ typedef struct sonject_measure_params {
     const char *labels;         /* file with the mask */
     const uint8_t *labels_mask; /* mask for pixels: rows x columns bytes */
     /* For sonject_measure_contacts. */
-    const char *truth;        /* a run's truth.json, for its boxes and spacings; NULL: none */
-    const sonject_box *boxes; /* box_count boxes, beside those of truth; without either, contacts
-                                 are looked for in the whole image */
-    double row_spacing_m;     /* 0: the value of truth or of the image's file, if any */
-    double column_spacing_m;  /* spacing in slant range */
-    double find_contrast_db;  /* least contrast of a contact that is looked for: brightest mean of 3
-                                 x 3 pixels over the seabed within about 64 pixels; 6...100, 0: 12 */
-    uint32_t find_most;       /* most contacts to look for, the brightest ones; 0: 100 */
-    uint32_t range_to_left;   /* 1: range grows to the left, as in the port half of an image of two
-                                 sides; 0: to the right, or as in truth */
+    const char *truth; /* a run's truth.json, for its boxes and spacings; NULL: none */
+    const sonject_box
+        *boxes;              /* box_count boxes, beside those of truth; one of both must be given */
+    double row_spacing_m;    /* 0: the value of truth or of the image's file, if any */
+    double column_spacing_m; /* spacing in slant range */
+    uint32_t range_to_left;  /* 1: range grows to the left, as in the port half of an image of two
+                                sides; 0: to the right, or as in truth */
 } sonject_measure_params;
 
 /* The statistics of an image's seabed. */
@@ -166,13 +163,10 @@ SONJECT_API sonject_status sonject_measure_contact(sonject_context *context,
                                                    double column_spacing_m,
                                                    sonject_contact_measures *measures);
 
-/* Measures contacts of an image. *text gets JSON, {"contacts": [...], "left_off": N}, with the
- * members of sonject_contact_measures (null: not known). *text is the caller's, for
- * sonject_text_release; on failure it is NULL. Contacts come in the order of boxes, then of truth.
- * Contacts that were looked for come the brightest first. None of them touches the box of a
- * brighter one, or is 20 dB fainter than one in its columns within 64 rows, as side lobes are. The
- * water column of a sidescan image and the first return at its end hold none. N counts further
- * areas that are bright enough. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+/* Measures contacts of an image. *text gets JSON, {"contacts": [...]}, with the members of
+ * sonject_contact_measures (null: not known). *text is the caller's, for sonject_text_release; on
+ * failure it is NULL. Contacts come in the order of boxes, then of truth. Errors: ARGUMENT, INPUT,
+ * STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
                                                     const sonject_measure_params *params,
                                                     char **text);

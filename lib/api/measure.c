@@ -10,9 +10,6 @@
 #include "measure/calibration.h"
 #include "measure/measures.h"
 
-#define FIND_MOST     100
-#define FIND_CONTRAST 12.0 /* dB */
-
 /* Makes a float for each of a swath's pixels: its number, or the magnitude of a complex one.
  * numbers: the swath's stored pixels or its linear ones. */
 static sonject_status find_magnitudes(struct report *report, const struct swath *swath,
@@ -120,22 +117,15 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
     return status;
 }
 
-/* Checks the parameters and fills in the defaults for 0. */
-static sonject_status check_contacts(struct report *report, sonject_measure_params *params)
+static sonject_status check_contacts(struct report *report, const sonject_measure_params *params)
 {
-    if (params->find_most == 0)
-        params->find_most = FIND_MOST;
-    if (params->find_contrast_db == 0.0)
-        params->find_contrast_db = FIND_CONTRAST;
     if (params->box_count > 0 && !params->boxes)
         return null_argument(report, "boxes");
-    if (params->box_count > BOXES_MAX || params->find_most > BOXES_MAX)
+    if (params->box_count == 0 && !params->truth)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "give boxes, or a run's truth");
+    if (params->box_count > BOXES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT, "at most %d contacts are measured",
                               BOXES_MAX);
-    if (!(params->find_contrast_db >= 6.0 && params->find_contrast_db <= 100.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "contacts are looked for by contrasts of 6...100 dB, not %g dB",
-                              params->find_contrast_db);
     return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
 }
 

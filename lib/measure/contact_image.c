@@ -74,7 +74,7 @@ static struct window_box box_within(const struct window_box *a, const struct win
                          smaller(a->first_column + a->columns, b->first_column + b->columns));
 }
 
-bool boxes_overlap(const struct window_box *a, const struct window_box *b)
+static bool boxes_overlap(const struct window_box *a, const struct window_box *b)
 {
     return a->first_row < b->first_row + b->rows && b->first_row < a->first_row + a->rows &&
            a->first_column < b->first_column + b->columns &&
@@ -227,11 +227,6 @@ static float mean_of_box(const struct contact_image *image, const struct window_
     return (float)(sum / ((double)box->rows * (double)box->columns));
 }
 
-size_t seabed_blocks(const struct window_box *box)
-{
-    return (box->rows / BLOCK) * (box->columns / BLOCK) + 1;
-}
-
 /* Returns the median of the blocks of `wide` that touch neither `box` nor the water column, or a
  * negative number if there are none. */
 static double level_beside(const struct contact_image *image, const struct window_box *wide,
@@ -250,21 +245,18 @@ static double level_beside(const struct contact_image *image, const struct windo
     return count > 0 ? (double)blocks[count / 2] : -1.0;
 }
 
-double level_within(const struct contact_image *image, const struct window_box *box, float *blocks)
-{
-    const double level = level_beside(image, box, NULL, blocks);
-    return level >= 0.0 ? level : (double)mean_of_box(image, box);
-}
-
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
                                  const struct window_box *box, double *level)
 {
     const struct window_box wide = box_with_margin(box, SEABED_MARGIN, image->rows, image->columns);
-    float *blocks = allocate_array(seabed_blocks(&wide), sizeof *blocks);
+    float *blocks =
+        allocate_array((wide.rows / BLOCK) * (wide.columns / BLOCK) + 1, sizeof *blocks);
     CHECK_MEMORY(report, blocks, "the seabed's level");
     *level = level_beside(image, &wide, box, blocks);
     if (*level < 0.0)
-        *level = level_within(image, &wide, blocks);
+        *level = level_beside(image, &wide, NULL, blocks);
+    if (*level < 0.0)
+        *level = (double)mean_of_box(image, &wide);
     free(blocks);
     return SONJECT_OK;
 }

@@ -394,12 +394,12 @@ static json_t *measures_document(const char *image, const sonject_contact_measur
 /* *text gets NULL where memory is out. */
 static sonject_status write_list(struct report *report, const char *image,
                                  const sonject_contact_measures *measures, size_t count,
-                                 size_t left_off, char **text)
+                                 char **text)
 {
     json_t *contacts = json_array();
     for (size_t i = 0; i < count; i++)
         json_append(&contacts, measures_document(image, &measures[i]));
-    json_t *document = JSON_OBJECT({"contacts", contacts}, {"left_off", json_count(left_off)});
+    json_t *document = JSON_OBJECT({"contacts", contacts});
     *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
     return *text ? SONJECT_OK : report_out_of_memory(report, image);
@@ -416,29 +416,6 @@ static sonject_status measure_list(struct report *report, const struct contact_l
         THEN(status, contact_measure(report, image, &place, list->row_spacing_m,
                                      list->column_spacing_m, &measures[i]));
     }
-    return status;
-}
-
-/* Measures the brightest contacts of the image. measures: room for `most` of them. */
-static sonject_status find_contacts(struct report *report, const struct contact_list *list,
-                                    double contrast, struct contact_image *image, size_t most,
-                                    sonject_contact_measures *measures, size_t *count,
-                                    size_t *left_off)
-{
-    struct contact_search search;
-    struct contact_place place;
-    sonject_status status = contact_search_begin(&search, report, image);
-    *count = 0;
-    while (status == SONJECT_OK && *count < most) {
-        status = contact_search_next(&search, report, image, contrast, &place);
-        if (status != SONJECT_OK || place.box.rows == 0)
-            break;
-        status = contact_measure(report, image, &place, list->row_spacing_m, list->column_spacing_m,
-                                 &measures[*count]);
-        ++*count;
-    }
-    *left_off = contact_search_left(&search, image, contrast);
-    contact_search_clear(&search);
     return status;
 }
 
@@ -462,7 +439,6 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
     struct contact_list list = {NULL, 0, 0.0, 0.0, false};
     struct contact_image image;
     sonject_contact_measures *measures = NULL;
-    size_t left_off = 0;
     memset(&image, 0, sizeof image);
     sonject_status status =
         take_boxes(&list, report, params, intensities->rows, intensities->columns);
@@ -470,19 +446,16 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
         list.row_spacing_m = intensities->row_spacing_m;
         list.column_spacing_m = intensities->column_spacing_m;
     }
-    const bool looks = !params->truth && list.count == 0;
-    size_t count = looks ? params->find_most : list.count;
+    const size_t count = list.count;
     if (status == SONJECT_OK) {
         if (list.is_reversed)
             turn_image(&list, intensities);
-        measures = allocate_array(count, sizeof *measures);
+        measures = allocate_array(count + 1, sizeof *measures);
         status = measures ? contact_image_create(&image, report, intensities->amplitudes,
                                                  intensities->rows, intensities->columns)
                           : report_out_of_memory(report, "contacts");
     }
-    THEN(status, looks ? find_contacts(report, &list, pow(10.0, 0.1 * params->find_contrast_db),
-                                       &image, count, measures, &count, &left_off)
-                       : measure_list(report, &list, &image, measures));
+    THEN(status, measure_list(report, &list, &image, measures));
     THEN(status, contacts_add_visibility(report, &image, measures, count));
     THEN(status, contacts_add_seabed(report, &image, measures, count));
     for (size_t i = 0; status == SONJECT_OK && list.is_reversed && i < count; i++) {
@@ -490,8 +463,7 @@ sonject_status measure_listed_contacts(struct report *report, const sonject_meas
         turn_box(&measures[i].highlight, intensities->columns);
         turn_box(&measures[i].shadow, intensities->columns);
     }
-    THEN(status,
-         write_list(report, params->image ? params->image : "", measures, count, left_off, text));
+    THEN(status, write_list(report, params->image ? params->image : "", measures, count, text));
     contact_image_clear(&image);
     free(measures);
     free(list.boxes);

@@ -1,4 +1,4 @@
-/* Contacts in an image of intensities: their search, their highlights and shadows, and their sizes.
+/* Contacts in an image of intensities: their highlights and shadows, and their sizes.
  * Measured and injected contacts are treated alike. The measures' names: sonject/measure.h. */
 #ifndef SONJECT_MEASURE_CONTACTS_H
 #define SONJECT_MEASURE_CONTACTS_H
@@ -42,7 +42,6 @@ struct window_box box_with_margin(const struct window_box *box, size_t margin, s
 
 /* Returns the smallest box around both. */
 struct window_box box_around(const struct window_box *a, const struct window_box *b);
-bool boxes_overlap(const struct window_box *a, const struct window_box *b);
 
 /* A set of pixels that are connected by their sides. */
 struct contact_area {
@@ -74,10 +73,6 @@ void contact_image_clear(struct contact_image *image);
  * blocks leaves out stones and shadows. Errors: MEMORY. */
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
                                  const struct window_box *box, double *level);
-
-/* Returns the median level of all pixels in a box. blocks: room for seabed_blocks(box) numbers. */
-double level_within(const struct contact_image *image, const struct window_box *box, float *blocks);
-size_t seabed_blocks(const struct window_box *box);
 
 /* The place at which a contact is looked for. */
 struct contact_place {
@@ -130,41 +125,5 @@ sonject_status measure_visibility(const struct contact_image *image, struct repo
                                   const struct window_box *highlight,
                                   const struct window_box *shadow,
                                   struct contact_visibility *visibility);
-
-/* A connected area at HIGHLIGHT_OVER_SEABED or more over the seabed around it. */
-struct bright_area {
-    struct window_box box;
-    double contrast; /* brightest mean of 3 x 3 pixels, over the seabed */
-};
-
-struct found_contact {
-    struct contact_place place;
-    double contrast;
-};
-
-struct contact_search {
-    struct bright_area *areas; /* sorted: the brightest first, then by row and column; owned */
-    size_t count, next;
-    struct found_contact *found; /* contacts found so far; owned */
-    size_t found_count;
-};
-
-/* Lists the bright areas of an image. The caller gives the search to contact_search_clear, also
- * after failure. Errors: MEMORY. */
-sonject_status contact_search_begin(struct contact_search *search, struct report *report,
-                                    const struct contact_image *image);
-void contact_search_clear(struct contact_search *search);
-
-/* Goes on to the next contact of this contrast or more. Skips areas that touch a contact found
- * before, that have no seabed around them, or that are side lobes: fainter than
- * HIGHLIGHT_UNDER_PEAK of a contact in the same columns some rows away. *place: has a margin around
- * highlight and shadow; no rows: there are no more contacts. Errors: MEMORY. */
-sonject_status contact_search_next(struct contact_search *search, struct report *report,
-                                   struct contact_image *image, double contrast,
-                                   struct contact_place *place);
-
-/* Returns how many remaining areas have this contrast and belong to no contact found so far. */
-size_t contact_search_left(const struct contact_search *search, const struct contact_image *image,
-                           double contrast);
 
 #endif

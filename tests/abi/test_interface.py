@@ -77,7 +77,7 @@ SIZES = {
     "sonject_element_layout": 176,
     "sonject_elements_params": 128,
     "sonject_form_params": 40,
-    "sonject_measure_params": 112,
+    "sonject_measure_params": 104,
     "sonject_measurement": 72,
     "sonject_merge_params": 16,
     "sonject_object_truth": 376,

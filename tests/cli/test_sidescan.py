@@ -465,7 +465,7 @@ def test_targets_in_layered_water_stay_behind_the_water_column(sonject, tmp_path
 
 
 def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, waterfall):
-    """Contacts are measured by truth, by boxes and by search. Boxes are in the image's own pixels."""
+    """Contacts are measured by truth and by boxes. Boxes are in the image's own pixels."""
     for folder in run_sides(sonject, tmp_path, "port"):
         (tmp_path / f"{folder.name}.json").write_bytes((folder / "truth.json").read_bytes())
     one = json.loads((tmp_path / "one.json").read_text())["objects"]
@@ -480,8 +480,7 @@ def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, water
 
     ways = [(["--truth", "both.json"], ["--truth", "one.json"]),
             (["--range-to-left", "--box", corners(mirrored("port", box["column"], box["columns"]))],
-             ["--box", corners(box["column"])]),
-            (["--range-to-left", "--find", "--find-contrast", "9"], ["--find", "--find-contrast", "9"])]
+             ["--box", corners(box["column"])])]
     for left, right in ways:
         found, expected = (json.loads(sonject.done("measure", image, *options).stdout)["contacts"]
                            for image, options in (("half.tif", left), ("turned.tif", right)))
@@ -493,7 +492,7 @@ def test_contacts_of_a_port_half_are_measured_as_others(sonject, tmp_path, water
                 assert a[key] == value or key == "image"
         assert any(contact["shadow_box"] for contact in expected)
     answer = sonject("measure", "half.tif", "--range-to-left")
-    assert answer.returncode == 2 and "--range-to-left is for --box, --truth and --find" in answer.stderr
+    assert answer.returncode == 2 and "--range-to-left is for --box and --truth" in answer.stderr
     assert_refused(sonject("measure", "half.tif", "--range-to-left", "--box", "0,200,5,9"), 3, "is not inside the image")
 
 

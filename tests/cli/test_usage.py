@@ -125,7 +125,7 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["seabed", "-o", "x.tif", "--altitude", "1,5"], ["--altitude"]),
         (["seabed", "-o", "x.tif", "--altitude", ""], ["--altitude"]),
         (["measure"], ["IMAGE is missing"]),
-        (["measure", "x.tif", "--find", "--targets", "y.png"], ["--targets"]),
+        (["measure", "x.tif", "--box=1,1,4,4", "--targets", "y.png"], ["--targets"]),
         (["measure", "x.tif", "--transfer", "sqrt"], ["measure: --transfer", "sqrt"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "0:-40"], ["--db", "MIN below MAX"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "-40"], ["--db"]),
