@@ -69,10 +69,12 @@ const struct verb convert_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "Without --db nothing is lost. OUT is .tif, .png, .npy or .h5; with --into FILE it has "
-        "FILE's format,\n"
-        "which may also be XTF, JSF or MATLAB. Samples that a file cannot hold are refused, never\n"
-        "clipped; only in JSF files, numbers beyond 16 bits become the largest one.",
+        "Without --db no sample changes. OUT is .tif, .png, .npy or .h5. It keeps the geometry "
+        "that is\n"
+        "known, but not IN's tags and further pages. With --into FILE it has FILE's format, which "
+        "may\n"
+        "also be XTF, JSF or MATLAB, and all else in FILE. Samples that a file cannot hold are\n"
+        "refused, never clipped; only in JSF files, numbers beyond 16 bits become the largest one.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

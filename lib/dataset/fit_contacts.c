@@ -38,12 +38,14 @@ static struct window_box chip_window(const sonject_box *label, size_t rows, size
 }
 
 /* Cuts the intensities of a window out of pixels with `columns` columns a row, so that range grows
- * to the right. first_column: column of the first pixel in the geometry's image. */
+ * to the right. first_column: column of the first pixel in the geometry's image. ceiling: amplitude
+ * at which files cut the pixels. */
 static sonject_status cut_chip(struct report *report, const float *pixels, bool is_complex,
                                size_t columns, const struct window_box *window,
                                const sonject_box *label, const sonject_geometry_params *geometry,
-                               size_t first_column, struct contact_chip *chip)
+                               size_t first_column, double ceiling, struct contact_chip *chip)
 {
+    const float most = (float)(ceiling * ceiling);
     const bool is_reversed = geometry_is_reversed(geometry);
     const size_t last = window->columns - 1;
     const size_t nearest = first_column + window->first_column + (is_reversed ? last : 0);
@@ -63,9 +65,9 @@ static sonject_status cut_chip(struct report *report, const float *pixels, bool 
         const size_t column = is_reversed ? last - i % window->columns : i % window->columns;
         const size_t k =
             (window->first_row + i / window->columns) * columns + window->first_column + column;
-        chip->intensity[i] =
-            is_complex ? pixels[2 * k] * pixels[2 * k] + pixels[2 * k + 1] * pixels[2 * k + 1]
-                       : pixels[k] * pixels[k];
+        chip->intensity[i] = fminf(most, is_complex ? pixels[2 * k] * pixels[2 * k] +
+                                                          pixels[2 * k + 1] * pixels[2 * k + 1]
+                                                    : pixels[k] * pixels[k]);
     }
     return SONJECT_OK;
 }
@@ -228,7 +230,7 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
     sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);
     if (status == SONJECT_OK) {
         status = cut_chip(campaign->report, swath.pixels, swath.is_complex, all.columns, &all,
-                          &inner, &scene.geometry, window.first_column, chip);
+                          &inner, &scene.geometry, window.first_column, INFINITY, chip);
         chip->swath = plan && (side == 0 || plan->side == side)
                           ? (size_t)(plan - campaign->campaign.swaths)
                           : SIZE_MAX;
@@ -258,7 +260,8 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     const sonject_box label = {padded.first_row, padded.first_column, padded.rows, padded.columns};
     const struct window_box window = chip_window(&label, result->rows, result->columns);
     CHECK(cut_chip(report, result->image, result->is_complex, result->columns, &window, &label,
-                   &image->scene.geometry, (size_t)image->plan.chip.first_column, chip));
+                   &image->scene.geometry, (size_t)image->plan.chip.first_column, result->ceiling,
+                   chip));
     chip->altitude_m = image->scene.sonar.altitude_m;
     return SONJECT_OK;
 }

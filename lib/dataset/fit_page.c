@@ -250,9 +250,18 @@ static sonject_status write_page(const struct fit *fit, const char *picture, con
 
 /* ---- The picture. */
 
-/* Draws a chip in dB about its median, on the same scale for all chips. */
+/* Returns the picture's pixels per metre, the same for all chips: the longest fills its place. */
+static double chip_scale(const struct contact_chip *chips, size_t count, double scale)
+{
+    for (size_t i = 0; i < count; i++)
+        scale = fmin(scale, CELL_SIDE / fmax((double)chips[i].rows * chips[i].row_spacing_m,
+                                             (double)chips[i].columns * chips[i].column_spacing_m));
+    return scale;
+}
+
+/* Draws a chip in dB about its median. Sizes and grey levels are alike for all chips. */
 static sonject_status draw_chip(struct report *report, struct canvas *canvas,
-                                const struct contact_chip *chip, int64_t x, int64_t y)
+                                const struct contact_chip *chip, double scale, int64_t x, int64_t y)
 {
     const size_t count = chip->rows * chip->columns;
     float *sorted = allocate_array(count, sizeof *sorted);
@@ -262,9 +271,9 @@ static sonject_status draw_chip(struct report *report, struct canvas *canvas,
     const double median_db = 10.0 * log10(fmax((double)sorted[count / 2], 1e-30));
     free(sorted);
     const sonject_box *label = &chip->label;
-    uint32_t sides[2];
-    plot_small_sides(chip->rows, chip->columns, chip->row_spacing_m, chip->column_spacing_m,
-                     CELL_SIDE, sides);
+    const double down = scale * chip->row_spacing_m, across = scale * chip->column_spacing_m;
+    const uint32_t sides[2] = {(uint32_t)fmax(1.0, floor(down * (double)chip->rows)),
+                               (uint32_t)fmax(1.0, floor(across * (double)chip->columns))};
     for (uint32_t i = 0; i < sides[0]; i++)
         for (uint32_t j = 0; j < sides[1]; j++) {
             const size_t at =
@@ -273,7 +282,6 @@ static sonject_status draw_chip(struct report *report, struct canvas *canvas,
             const uint8_t grey = (uint8_t)(255.0 * fmin(fmax((db + 14.0) / 34.0, 0.0), 1.0));
             canvas_fill(canvas, x + j, y + i, 1, 1, (struct colour){grey, grey, grey});
         }
-    const double down = sides[0] / (double)chip->rows, across = sides[1] / (double)chip->columns;
     canvas_frame(canvas, x + (int64_t)((double)label->first_column * across),
                  y + (int64_t)((double)label->first_row * down),
                  (int64_t)((double)label->columns * across), (int64_t)((double)label->rows * down),
@@ -282,10 +290,11 @@ static sonject_status draw_chip(struct report *report, struct canvas *canvas,
 }
 
 static sonject_status draw_chips(struct report *report, struct canvas *canvas,
-                                 const struct contact_chip *chips, size_t count, size_t first_row)
+                                 const struct contact_chip *chips, size_t count, double scale,
+                                 size_t first_row)
 {
     for (size_t i = 0; i < count; i++)
-        CHECK(draw_chip(report, canvas, &chips[i],
+        CHECK(draw_chip(report, canvas, &chips[i], scale,
                         CELL_GAP + (int64_t)(i % ACROSS) * (CELL_SIDE + CELL_GAP),
                         CELL_GAP + (int64_t)(first_row + i / ACROSS) * (CELL_SIDE + CELL_GAP)));
     return SONJECT_OK;
@@ -295,15 +304,17 @@ static sonject_status write_picture(const struct fit *fit, const char *path)
 {
     const size_t real_rows = (fit->real_chip_count + ACROSS - 1) / ACROSS;
     const size_t made_rows = (fit->made_chip_count + ACROSS - 1) / ACROSS;
+    const double scale = chip_scale(fit->made_chips, fit->made_chip_count,
+                                    chip_scale(fit->real_chips, fit->real_chip_count, INFINITY));
     struct canvas canvas;
     if (!canvas_create(&canvas,
                        CELL_GAP + (uint32_t)(real_rows + made_rows) * (CELL_SIDE + CELL_GAP),
                        CELL_GAP + ACROSS * (CELL_SIDE + CELL_GAP), (struct colour){255, 255, 255}))
         return report_out_of_memory(fit->report, "the page");
     sonject_status status =
-        draw_chips(fit->report, &canvas, fit->real_chips, fit->real_chip_count, 0);
+        draw_chips(fit->report, &canvas, fit->real_chips, fit->real_chip_count, scale, 0);
     THEN(status,
-         draw_chips(fit->report, &canvas, fit->made_chips, fit->made_chip_count, real_rows));
+         draw_chips(fit->report, &canvas, fit->made_chips, fit->made_chip_count, scale, real_rows));
     if (status == SONJECT_OK) {
         const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
         status = raster_file_write(fit->report, path, &layout, NULL, NULL, 0, canvas.rgb);

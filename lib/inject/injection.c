@@ -62,6 +62,7 @@ static void fill_statistics(const struct prepared *prepared, struct injection_re
     const struct tracer *tracer = &prepared->setup.tracer;
     sonject_statistics *statistics = &result->statistics;
     tell_match(&prepared->match, tracer, statistics);
+    result->ceiling = prepared->match.ceiling;
     statistics->pings = tracer->counts.pings;
     statistics->rays = tracer->counts.rays;
     statistics->ray_queries = tracer->counts.queries;

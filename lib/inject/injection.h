@@ -52,7 +52,8 @@ struct injected_window {
 struct injection_result {
     size_t rows, columns;
     bool is_complex;
-    float *image; /* amplitudes or pairs, as the input; owned, as are all members */
+    float *image;   /* amplitudes or pairs, as the input; owned, as are all members */
+    double ceiling; /* largest amplitude that the image's file stores, or that is not saturated */
     uint8_t *highlight, *shadow, *labels, *influence;
     struct injected_window *windows; /* their other layers are kept; owned */
     size_t window_count;

@@ -343,3 +343,27 @@ objects: [{name: box, shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, posi
     seabed = columns[:60].mean()
     # the shadow ends at column 177; the first columns hold the box's own echo and its pulse
     assert decibels(columns[115:170] / seabed).max() < -50
+
+
+@pytest.mark.parametrize("echo", ["a pixel", "a target"])
+def test_echoes_in_the_image_move_no_levels(sonject, tmp_path, echo):
+    """A target's levels hold beside one that the image shows already, or beside a single pixel at 66 dB."""
+    plain = 0.05 * numpy.random.default_rng(1).rayleigh(numpy.sqrt(0.5), (400, 500)).astype(numpy.float32)
+    beside = plain.copy()
+    if echo == "a pixel":
+        beside[260, 250] = 100
+    else:
+        beside[230:240, 240:260] *= 10
+    scene = SCENE.format(path="image.npy", row_spacing=0.1, column_spacing=0.05, first_range=40,
+                         transfer="  transfer: {kind: amplitude}", patch=(0, 0, 400, 500), sonar=SONAR,
+                         objects="  - {shape: cylinder, length: 2 m, diameter: 0.5 m, position: {row: 200, column: 250},\n"
+                                 "     level: {over_seabed: 12 dB}}\n")
+    levels = []
+    for number, image in enumerate((plain, beside)):
+        numpy.save(tmp_path / "image.npy", image)
+        (tmp_path / "scene.yaml").write_text(scene)
+        sonject.done("run", "scene.yaml", "-o", str(number), "--set", "injection.noise_floor=-20 dB")
+        intensity = numpy.load(tmp_path / str(number) / "image.npy") ** 2
+        levels.append([decibels(intensity[read_png(tmp_path / str(number) / f"{part}.png") > 0].mean())
+                       for part in ("highlight", "shadow")])
+    assert numpy.abs(numpy.subtract(*levels)).max() < 0.2, levels
