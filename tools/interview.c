@@ -165,6 +165,7 @@ static const char *problem_of(const struct interview *interview)
 static const char *take_nadir(struct interview *interview, const char *column)
 {
     const size_t before = interview->count;
+    interview->is_reversed = false;
     snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.nadir_column=%s",
              column);
     snprintf(interview->answers[interview->count++], ANSWER, "input.geometry.side=port");

@@ -8,11 +8,11 @@
 #include "image/statistics.h"
 #include "scene/point_response.h"
 
-#define LEVEL_FLOOR 1e-6  /* share of the mean intensity; blank corners of a swath have no level */
-#define SHARE_LEAST 0.05f /* least share of seabed around a pixel that gives its level */
-#define CELL        64    /* side of a cell with one median, pixels */
-#define SAMPLE_STEP 8     /* every eighth row and column of a cell tells its median */
-#define ECHO        24.0 /* over a cell's median; one look of even seabed exceeds it once in 2^24 */
+#define LEVEL_FLOOR 1e-6   /* share of the mean intensity; blank corners of a swath have no level */
+#define SHARE_LEAST 0.05f  /* least share of seabed around a pixel that gives its level */
+#define DOUBTFUL    16.0f  /* over the level; one look of even seabed exceeds it once in e^16 */
+#define BRIGHTEST   32.0f  /* over the seabed's level: brighter pixels are echoes */
+#define ROOT_LEVEL  0.675f /* of one look, the mean fourth root's fourth power over the mean */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
@@ -68,126 +68,108 @@ static sonject_status smooth(struct report *report, const struct level_region *r
                       radius_m / region->view->column_spacing_m, mean);
 }
 
-/* Finds the local mean of the pixels of weight 1, not 0. Where hardly any is near, as in the water
- * column, it is that of the next pixel in range. Overwrites the weights. */
-static sonject_status weighted_level(struct report *report, const struct level_region *region,
-                                     const float *intensity, float *weights, float *level)
+/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby. */
+static sonject_status level_beside_water(struct report *report, const struct level_region *region,
+                                         const float *intensity, float *level)
 {
     const size_t columns = region->at.columns;
     const size_t count = region->at.rows * columns;
     const double radius = region->scene->seabed.level_radius_m;
+    float *seabed = allocate_array(2 * count, sizeof *seabed);
+    float *share = seabed + count;
+    CHECK_MEMORY(report, seabed, "the patch");
     for (size_t i = 0; i < count; i++)
-        level[i] = weights[i] * intensity[i];
-    CHECK(smooth(report, region, level, radius, level));
-    CHECK(smooth(report, region, weights, radius, weights));
-    for (size_t i = count; i-- > 0;) {
+        seabed[i] = i % columns < region->water_columns ? 0.0f : 1.0f;
+    sonject_status status = smooth(report, region, seabed, radius, share);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        seabed[i] *= intensity[i];
+    THEN(status, smooth(report, region, seabed, radius, level));
+    for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
         const bool has_neighbour = (i + 1) % columns != 0;
-        level[i] = weights[i] > SHARE_LEAST ? level[i] / weights[i]
-                   : has_neighbour          ? level[i + 1]
-                                            : 0.0f;
+        level[i] = share[i] > SHARE_LEAST ? level[i] / share[i]
+                   : has_neighbour        ? level[i + 1]
+                                          : 0.0f;
     }
+    free(seabed);
+    return status;
+}
+
+/* Returns whether any pixel may be an echo of an object. */
+static bool may_have_echoes(const struct level_region *region, const float *intensity,
+                            const float *level)
+{
+    const size_t count = region->at.rows * region->at.columns;
+    size_t i = 0;
+    while (i < count && !(intensity[i] > DOUBTFUL * level[i]))
+        i++;
+    return i < count;
+}
+
+/* Finds local means of some values of the pixels that have the weight 1, not 0. Values and weights
+ * become these means and the shares of such pixels. */
+static sonject_status smooth_weighted(struct report *report, const struct level_region *region,
+                                      float *values, float *weights)
+{
+    const size_t count = region->at.rows * region->at.columns;
+    const double radius = region->scene->seabed.level_radius_m;
+    for (size_t i = 0; i < count; i++)
+        values[i] *= weights[i];
+    CHECK(smooth(report, region, values, radius, values));
+    CHECK(smooth(report, region, weights, radius, weights));
+    for (size_t i = 0; i < count; i++)
+        values[i] = weights[i] > SHARE_LEAST ? values[i] / weights[i] : 0.0f;
     return SONJECT_OK;
 }
 
-/* The median of some pixels of each cell of the patch, over a rectangle of cells. */
-struct cell_medians {
-    size_t first_row, first_column, rows, columns; /* cells */
-    double *medians;                               /* owned */
-};
-
-static sonject_status find_medians(struct report *report, const struct level_region *region,
-                                   const float *intensity, struct cell_medians *cells)
+/* Finds the level anew without echoes of what the image shows already. The mean of fourth roots,
+ * in which echoes hardly count, tells what is one; zeros say nothing in coarse grey levels. Where
+ * echoes fill all, the level stays. */
+static sonject_status leave_out_echoes(struct report *report, const struct level_region *region,
+                                       const float *intensity, float *level)
 {
-    const struct window *at = &region->at;
-    cells->first_row = at->first_row / CELL;
-    cells->first_column = at->first_column / CELL;
-    cells->rows = (at->first_row + at->rows - 1) / CELL + 1 - cells->first_row;
-    cells->columns = (at->first_column + at->columns - 1) / CELL + 1 - cells->first_column;
-    cells->medians = allocate_array(cells->rows, cells->columns * sizeof *cells->medians);
-    CHECK_MEMORY(report, cells->medians, "the patch");
-    for (size_t i = 0; i < cells->rows * cells->columns; i++) {
-        double values[(CELL / SAMPLE_STEP) * (CELL / SAMPLE_STEP)];
-        size_t count = 0;
-        for (size_t k = 0; k < COUNT(values); k++) {
-            const size_t row = (cells->first_row + i / cells->columns) * CELL +
-                               k / (CELL / SAMPLE_STEP) * SAMPLE_STEP;
-            const size_t column = (cells->first_column + i % cells->columns) * CELL +
-                                  k % (CELL / SAMPLE_STEP) * SAMPLE_STEP;
-            if (row >= at->first_row && row < at->first_row + at->rows &&
-                column >= at->first_column && column < at->first_column + at->columns)
-                values[count++] = (double)
-                    intensity[(row - at->first_row) * at->columns + column - at->first_column];
-        }
-        cells->medians[i] = count > 0 ? median_of(values, count) : 0.0;
+    const size_t columns = region->at.columns;
+    const size_t count = region->at.rows * columns;
+    float *values = allocate_array(2 * count, sizeof *values);
+    CHECK_MEMORY(report, values, "the patch");
+    float *weights = values + count;
+    size_t echoes = 0;
+    for (size_t i = 0; i < count; i++) {
+        values[i] = sqrtf(sqrtf(intensity[i]));
+        weights[i] = i % columns < region->water_columns || intensity[i] == 0.0f ? 0.0f : 1.0f;
     }
-    return SONJECT_OK;
+    sonject_status status = smooth_weighted(report, region, values, weights);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
+        const float square = values[i] * values[i];
+        const bool is_water = i % columns < region->water_columns;
+        const bool is_echo =
+            square > 0.0f && intensity[i] > BRIGHTEST / ROOT_LEVEL * square * square;
+        values[i] = intensity[i];
+        weights[i] = is_water || is_echo ? 0.0f : 1.0f;
+        echoes += !is_water && is_echo;
+    }
+    if (echoes > 0)
+        THEN(status, smooth_weighted(report, region, values, weights));
+    for (size_t i = 0; echoes > 0 && status == SONJECT_OK && i < count; i++)
+        level[i] = weights[i] > SHARE_LEAST ? values[i] : level[i];
+    free(values);
+    return status;
 }
 
-/* Returns the most that a pixel of seabed in a cell shows, by the largest median of the cell and
- * those around it: a shadow hides no whole neighbourhood. Infinite where all are black. */
-static double brightest_seabed(const struct cell_medians *cells, size_t row, size_t column)
-{
-    double largest = 0.0;
-    for (size_t r = row > 0 ? row - 1 : 0; r <= row + 1 && r < cells->rows; r++)
-        for (size_t c = column > 0 ? column - 1 : 0; c <= column + 1 && c < cells->columns; c++)
-            largest = fmax(largest, cells->medians[r * cells->columns + c]);
-    return largest > 0.0 ? ECHO * largest : INFINITY;
-}
-
-/* Gives pixels of the water column and echoes of what the image shows already the weight 0, others
- * 1. Returns whether any has 0. weights may be NULL; without medians no pixel is an echo. */
-static bool weigh_seabed(const struct level_region *region, const float *intensity,
-                         const struct cell_medians *cells, float *weights)
-{
-    const struct window *at = &region->at;
-    bool leaves_out = false;
-    for (size_t row = 0; row < at->rows; row++)
-        for (size_t column = 0, end; column < at->columns; column = end) {
-            const size_t cell = (at->first_column + column) / CELL;
-            const double most =
-                cells->medians
-                    ? brightest_seabed(cells, (at->first_row + row) / CELL - cells->first_row,
-                                       cell - cells->first_column)
-                    : INFINITY;
-            end = (cell + 1) * CELL - at->first_column;
-            end = end < at->columns ? end : at->columns;
-            for (size_t k = column; k < end; k++) {
-                const bool is_seabed =
-                    k >= region->water_columns && (double)intensity[row * at->columns + k] <= most;
-                if (weights)
-                    weights[row * at->columns + k] = is_seabed ? 1.0f : 0.0f;
-                leaves_out |= !is_seabed;
-            }
-        }
-    return leaves_out;
-}
-
-/* Finds the seabed's level: the local mean without the water column and without echoes of what the
- * image shows already. A patch that is traced anew keeps the energy of these. */
+/* Finds the seabed's level. In mode resynthesise echoes count, since the new seabed must have their
+ * energy. */
 static sonject_status find_level(struct report *report, const struct level_region *region,
                                  const float *intensity, float *level)
 {
     const size_t count = region->at.rows * region->at.columns;
-    struct cell_medians cells = {0};
-    float *weights = NULL;
-    sonject_status status = SONJECT_OK;
-    if (region->scene->injection.mode == SONJECT_MODE_COMPOSITE)
-        status = find_medians(report, region, intensity, &cells);
-    if (status == SONJECT_OK && weigh_seabed(region, intensity, &cells, NULL)) {
-        weights = allocate_array(count, sizeof *weights);
-        status = weights ? SONJECT_OK : report_out_of_memory(report, "the patch");
-        if (weights)
-            weigh_seabed(region, intensity, &cells, weights);
-        THEN(status, weighted_level(report, region, intensity, weights, level));
-    } else {
-        THEN(status,
-             smooth(report, region, intensity, region->scene->seabed.level_radius_m, level));
-    }
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+    CHECK(region->water_columns > 0
+              ? level_beside_water(report, region, intensity, level)
+              : smooth(report, region, intensity, region->scene->seabed.level_radius_m, level));
+    if (region->scene->injection.mode == SONJECT_MODE_COMPOSITE &&
+        may_have_echoes(region, intensity, level))
+        CHECK(leave_out_echoes(report, region, intensity, level));
+    for (size_t i = 0; i < count; i++)
         level[i] = fmaxf(level[i], (float)(LEVEL_FLOOR * region->mean));
-    free(cells.medians);
-    free(weights);
-    return status;
+    return SONJECT_OK;
 }
 
 /* Finds the map: the intensity, or its local mean, over the level. */

@@ -1,6 +1,7 @@
 #include "measure/first_return.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,11 +26,14 @@
 static float darkest_intensity(const float *intensity, size_t count)
 {
     double samples[SAMPLES];
-    const size_t stride = count / SAMPLES + 1;
+    const uint64_t golden = UINT64_C(11400714819323198485); /* 2^64 over the golden ratio */
     size_t found = 0;
-    for (size_t i = 0; i < count; i += stride)
+    for (uint64_t k = 0; count > 0 && k < SAMPLES; k++) {
+        /* places spread evenly, whatever the length of a row */
+        const size_t i = (size_t)ldexp((double)(k * golden >> 11) * (double)count, -53);
         if (intensity[i] > FAINTEST)
             samples[found++] = (double)intensity[i];
+    }
     return found > 0 ? fmaxf(FAINTEST, (float)(DARKEST * median_of(samples, found))) : FAINTEST;
 }
 

@@ -71,7 +71,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
     }
 static const struct field mesh_fields[] = {
     {"file", "mesh file of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"unit", "unit of the mesh file's numbers; by default m", LENGTH_UNIT(unit_m)},
+    {"unit", "length of one unit of the mesh file's numbers, such as cm or 2.54 cm; by default m", LENGTH_UNIT(unit_m)},
     {"nose", "axis of the mesh file that points along the object's nose", WORD(nose) = AXIS_WORDS},
     {"up", "axis of the mesh file that points up when level", WORD(up) = AXIS_WORDS,
      .preset = AXIS_Z},

@@ -62,13 +62,13 @@ def test_range_may_grow_to_the_left(sonject, image):
 
 def test_a_nadir_that_was_not_found_can_be_answered(sonject, image):
     """The image shows no water column. Range grows to both sides of the column that is named."""
-    answers = [*ANSWERS[:2], f"nadir {COLUMNS}", "nadir x", f"nadir {COLUMNS // 3}.5", "port", "2 m", *ANSWERS[4:]]
+    answers = [*ANSWERS[:2], "foo left", f"nadir {COLUMNS}", "nadir x", f"nadir {COLUMNS // 3}.5", "port", "2 m", *ANSWERS[4:]]
     answer = init(sonject, "swath.npy", "--campaign", answers=answers)
     assert answer.returncode == 0, answer.stderr
     assert f"the answer 'nadir {COLUMNS}': the image has no columns" in answer.stderr and "the answer 'nadir x'" in answer.stderr
     scene = image.with_suffix(".yaml").read_text()
-    for line in (f"nadir_column: {COLUMNS // 3}.5", "side: port"):
-        assert f"    {line} # " in scene
+    for line in (f"nadir_column: {COLUMNS // 3}.5 # range grows to both sides", "side: port # of the nadir column"):
+        assert f"    {line}\n" in scene
     assert "first_slant_range" not in scene
     campaign = (image.parent / "swath_campaign.yaml").read_text()
     assert "set: {input.geometry.side: port}" in campaign and "set: {input.geometry.side: starboard}" in campaign
