@@ -392,7 +392,8 @@ FRAGMENTS = {
 OTHER_FRAGMENTS = {
     "labels: [yolo]", "target:", "visible: {highlight: 1.2 dB, shadow: -2.3 dB}", "chip.spread: 1",
     "chip: {rows: all, columns: all}", "draw: {table: bodies.csv}", "{file: bodies.csv, weight: count}", "{of: length, uniform: [0.5, 1]}",
-    "format: as_input", "altitude: first_return", "grey: [-50 dB, -6 dB]", "clutter.labelled: false"}
+    "format: as_input", "altitude: first_return", "grey: [-50 dB, -6 dB]", "clutter.labelled: false",
+    "mesh.unit: {log_uniform: [0.2 cm, 1.3 cm]}"}
 
 
 def test_fragments_of_scene_files_are_read(project):
