@@ -68,43 +68,6 @@ static sonject_status smooth(struct report *report, const struct level_region *r
                       radius_m / region->view->column_spacing_m, mean);
 }
 
-/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby. */
-static sonject_status level_beside_water(struct report *report, const struct level_region *region,
-                                         const float *intensity, float *level)
-{
-    const size_t columns = region->at.columns;
-    const size_t count = region->at.rows * columns;
-    const double radius = region->scene->seabed.level_radius_m;
-    float *seabed = allocate_array(2 * count, sizeof *seabed);
-    float *share = seabed + count;
-    CHECK_MEMORY(report, seabed, "the patch");
-    for (size_t i = 0; i < count; i++)
-        seabed[i] = i % columns < region->water_columns ? 0.0f : 1.0f;
-    sonject_status status = smooth(report, region, seabed, radius, share);
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        seabed[i] *= intensity[i];
-    THEN(status, smooth(report, region, seabed, radius, level));
-    for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
-        const bool has_neighbour = (i + 1) % columns != 0;
-        level[i] = share[i] > SHARE_LEAST ? level[i] / share[i]
-                   : has_neighbour        ? level[i + 1]
-                                          : 0.0f;
-    }
-    free(seabed);
-    return status;
-}
-
-/* Returns whether any pixel may be an echo of an object. */
-static bool may_have_echoes(const struct level_region *region, const float *intensity,
-                            const float *level)
-{
-    const size_t count = region->at.rows * region->at.columns;
-    size_t i = 0;
-    while (i < count && !(intensity[i] > DOUBTFUL * level[i]))
-        i++;
-    return i < count;
-}
-
 /* Finds local means of some values of the pixels that have the weight 1, not 0. Values and weights
  * become these means and the shares of such pixels. */
 static sonject_status smooth_weighted(struct report *report, const struct level_region *region,
@@ -119,6 +82,39 @@ static sonject_status smooth_weighted(struct report *report, const struct level_
     for (size_t i = 0; i < count; i++)
         values[i] = weights[i] > SHARE_LEAST ? values[i] / weights[i] : 0.0f;
     return SONJECT_OK;
+}
+
+/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby. */
+static sonject_status level_beside_water(struct report *report, const struct level_region *region,
+                                         const float *intensity, float *level)
+{
+    const size_t columns = region->at.columns;
+    const size_t count = region->at.rows * columns;
+    float *weights = allocate_array(count, sizeof *weights);
+    CHECK_MEMORY(report, weights, "the patch");
+    for (size_t i = 0; i < count; i++) {
+        weights[i] = i % columns < region->water_columns ? 0.0f : 1.0f;
+        level[i] = intensity[i];
+    }
+    const sonject_status status = smooth_weighted(report, region, level, weights);
+    for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
+        const bool has_neighbour = (i + 1) % columns != 0;
+        if (!(weights[i] > SHARE_LEAST) && has_neighbour)
+            level[i] = level[i + 1];
+    }
+    free(weights);
+    return status;
+}
+
+/* Returns whether any pixel may be an echo of an object. */
+static bool may_have_echoes(const struct level_region *region, const float *intensity,
+                            const float *level)
+{
+    const size_t count = region->at.rows * region->at.columns;
+    size_t i = 0;
+    while (i < count && !(intensity[i] > DOUBTFUL * level[i]))
+        i++;
+    return i < count;
 }
 
 /* Finds the level anew without echoes of what the image shows already. The mean of fourth roots,
