@@ -260,6 +260,15 @@ static void check_transfer(const sonject::context &context)
     auto measuring = sonject::defaults<sonject_measure_params>();
     measuring.image = "swath.tif";
     const sonject_measurement plain = sonject::measure(context, measuring);
+    try {
+        sonject::measure_contacts(context, measuring);
+        expect(false, "contacts need boxes");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "boxes are asked for");
+    }
+    const sonject_box box = {0, 0, 8, 8};
+    measuring.boxes = &box;
+    measuring.box_count = 1;
     expect(sonject::measure_contacts(context, measuring).find("contacts") != std::string::npos,
            "contacts are measured");
     measuring.transfer = "{kind: gamma, parameter: 2}";
