@@ -72,9 +72,10 @@ sonject_status checkpoint_add_up(struct checkpoint *checkpoint, uint64_t count,
 /* Adds a value to a sum. Returns false, with the sum unchanged, where the result does not fit. */
 bool add_without_overflow(int64_t *sum, int64_t value);
 
-/* Ends the launches: checks that everything was traced, or could be added up. counts are this
- * checkpoint's; where checkpoints are added up, counts become the sum over all. Errors: INPUT (the
- * checkpoints launched other things, or hold more sums), CANCELLED (less was traced). */
+/* Ends the launches: checks that everything was traced and handed on, or could be added up. counts
+ * are this checkpoint's; where checkpoints are added up, counts become the sum over all. Errors:
+ * INPUT (the checkpoints launched other things, or hold more sums), CANCELLED (tracing was stopped,
+ * even with the last strips). */
 sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts);
 
 /* Gives what was traced, all or not, its name in the folder, after checkpoint_finish. source may be

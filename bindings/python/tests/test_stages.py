@@ -76,3 +76,21 @@ def test_progress_cancels_both_stages(tmp_path):
             impulses, tmp_path / "a", scene=make_scene(), progress=lambda fraction, stage: True
         )
     assert not (tmp_path / "a" / "run.json").exists()
+
+
+def test_a_run_cancelled_at_any_call_has_no_result_and_goes_on(tmp_path):
+    """Not even with the last rays, when all is traced but not all is formed."""
+    told = []
+    sonject.run(make_scene(), tmp_path / "whole", lambda fraction, stage: told.append(stage))
+    image = (tmp_path / "whole" / "image.tif").read_bytes()
+    stopped = 0
+    for number in range(len(told)):
+        folder, calls = tmp_path / str(number), iter(range(number))
+        try:
+            sonject.run(make_scene(), folder, lambda fraction, stage: next(calls, None) is None)
+        except sonject.Cancelled:
+            assert not (folder / "run.json").exists()
+            stopped += 1
+            sonject.run(make_scene(), folder)
+        assert (folder / "image.tif").read_bytes() == image, told[number]
+    assert stopped > 2
