@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 
 #include "base/memory.h"
 #include "inject/echoes.h"
@@ -104,6 +105,41 @@ static double scale_of(const struct line_grid *grid, const struct tracer *tracer
     return 1.0 / sqrt(energy_gain(&columns) * energy_gain(&rows));
 }
 
+#define EVEN_PIXELS 8 /* pixels to each side over which the energy of seabed in view is even */
+
+/* Sums of a strip's energies from its first bin on: count + 1 each. */
+struct strip_sums {
+    double *all, *in_view;
+    size_t count, bins_per_pixel;
+};
+
+static void sum_strip(struct strip_sums *sums, const float *all, const float *in_view)
+{
+    for (size_t bin = 0; bin < sums->count; bin++) {
+        sums->all[bin + 1] = sums->all[bin] + (double)all[bin];
+        sums->in_view[bin + 1] = sums->in_view[bin] + (double)in_view[bin];
+    }
+}
+
+/* Returns the energy in view of a bin: the share in view of rays within half a pixel, of the mean
+ * energy of the seabed around. A bin has few rays, and the root of their energy alone would be too
+ * small in the mean. */
+static double energy_in_view(const struct strip_sums *sums, size_t bin)
+{
+    const size_t reach = EVEN_PIXELS * sums->bins_per_pixel;
+    const size_t low = bin > reach ? bin - reach : 0;
+    const size_t high = bin + reach + 1 < sums->count ? bin + reach + 1 : sums->count;
+    const size_t half = sums->bins_per_pixel / 2;
+    const size_t near = bin > half ? bin - half : 0;
+    const size_t far = bin + half + 1 < sums->count ? bin + half + 1 : sums->count;
+    const double around = sums->all[high] - sums->all[low];
+    const double here = sums->all[far] - sums->all[near];
+    const double share = here > 0.0     ? (sums->in_view[far] - sums->in_view[near]) / here
+                         : around > 0.0 ? (sums->in_view[high] - sums->in_view[low]) / around
+                                        : 0.0;
+    return share * around / (double)(high - low);
+}
+
 static double clamp_index(double index, size_t count)
 {
     return fmin(fmax(index, 0.0), (double)(count - 1));
@@ -118,7 +154,17 @@ float *coherent_seabed_lines(const struct tracer *tracer, const struct echo_requ
     const size_t cells = (size_t)lines->strips.count * width;
     const double scale = scale_of(grid, tracer);
     float *parts = allocate_array(2 * cells, sizeof *parts);
-    for (size_t at = 0; parts && at < cells; at++) {
+    double *memory = allocate_array(2 * (width + 1), sizeof *memory);
+    struct strip_sums sums = {memory, memory ? memory + width + 1 : NULL, width,
+                              grid->bins_per_pixel};
+    if (!parts || !memory) {
+        free(parts);
+        free(memory);
+        return NULL;
+    }
+    for (size_t at = 0; at < cells; at++) {
+        if (at % width == 0)
+            sum_strip(&sums, lines->plane[0] + at, lines->plane[1] + at);
         const int32_t strip = lines->strips.first + (int32_t)(at / width);
         const double row = clamp_index(floor((double)strip / grid->strips_per_row), view->rows);
         const double column =
@@ -127,12 +173,13 @@ float *coherent_seabed_lines(const struct tracer *tracer, const struct echo_requ
         const size_t left = (size_t)row * view->columns + (size_t)column;
         const size_t right = (size_t)column + 1 < view->columns ? left + 1 : left;
         const double part = column - floor(column);
-        const double amplitude = scale * sqrt(lines->plane[1][at]);
+        const double amplitude = scale * sqrt(energy_in_view(&sums, at % width));
         parts[at] = (float)(amplitude * ((1.0 - part) * request->reflectivity_real[left] +
                                          part * request->reflectivity_real[right]));
         parts[cells + at] =
             (float)(amplitude * ((1.0 - part) * request->reflectivity_imaginary[left] +
                                  part * request->reflectivity_imaginary[right]));
     }
+    free(memory);
     return parts;
 }
