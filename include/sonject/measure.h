@@ -22,8 +22,9 @@ typedef struct sonject_measure_params {
     const char *transfer;
     /* For sonject_measure: a mask of the image's size, not 0 where there is no seabed, such as in
      * highlights and shadows. Either may be NULL. */
-    const char *labels;         /* file with the mask */
-    const uint8_t *labels_mask; /* mask for pixels: rows x columns bytes */
+    const char *labels;         /* file with the mask; like channel, array and transfer, of `image`
+                                   alone: beside pixels, ARGUMENT */
+    const uint8_t *labels_mask; /* mask of `pixels` alone: rows x columns bytes */
     /* For sonject_measure_contacts. */
     const char *truth; /* a run's truth.json, for its boxes and spacings; NULL: none */
     const sonject_box

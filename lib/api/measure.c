@@ -78,6 +78,13 @@ static sonject_status take_image(struct report *report, const sonject_measure_pa
     CHECK(params_take(report, taken, sizeof *taken, params, sizeof *taken, "measure parameters"));
     if (!taken->image == !taken->pixels)
         return report_failure(report, SONJECT_ERROR_ARGUMENT, "give an image file, or pixels");
+    if (taken->pixels && (taken->transfer || taken->channel || taken->array || taken->labels))
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "transfer, channel, array and labels are of image files: pixels have "
+                              "a transfer of their own, and labels_mask");
+    if (taken->image && taken->labels_mask)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "labels_mask is of pixels: labels names the mask of an image file");
     return image_options_take(report, taken->channel, taken->array, taken->transfer, NULL, options);
 }
 

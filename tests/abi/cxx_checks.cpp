@@ -287,6 +287,27 @@ static void check_transfer(const sonject::context &context)
             refused += error.status() == SONJECT_ERROR_INPUT;
         }
     expect(refused == 2, "and is checked");
+    const std::vector<std::uint8_t> mask(64 * 64, 1);
+    const std::vector<float> amplitudes(64 * 64, 0.1F);
+    auto pixels = sonject::defaults<sonject_pixels>();
+    pixels.data = amplitudes.data();
+    pixels.rows = pixels.columns = 64;
+    refused = 0;
+    for (int number = 0; number < 2; number++)
+        try {
+            auto mixed = sonject::defaults<sonject_measure_params>();
+            if (number == 0) {
+                mixed.image = "swath.tif";
+                mixed.labels_mask = mask.data();
+            } else {
+                mixed.pixels = &pixels;
+                mixed.transfer = "{kind: decibel, parameter: 1}";
+            }
+            sonject::measure(context, mixed);
+        } catch (const sonject::error &error) {
+            refused += error.status() == SONJECT_ERROR_ARGUMENT;
+        }
+    expect(refused == 2, "a mask of pixels is not of a file, a file's transfer not of pixels");
 }
 
 static void check_progress(const sonject::context &context)
