@@ -439,6 +439,9 @@ sonject_status campaign_open(struct report *report, const struct campaign_source
                              struct sonject_campaign **campaign);
 void campaign_close(struct sonject_campaign **campaign);
 
+/* Returns the override that makes a scene read this image, for free(); NULL where memory is out. */
+char *input_override(const char *image);
+
 /* Reads the campaign's base scene for an image file. source: overrides, with room for one more, and
  * any other choices; the rest is filled in. scene: see campaign_read_scene. Errors: those of
  * sonject_scene_read. */

@@ -77,14 +77,19 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
     mistakes_tell(&mistakes, campaign->report, SONJECT_ERROR_INPUT);
 }
 
-sonject_status campaign_read_base(struct sonject_campaign *campaign, const char *image,
-                                  struct scene_source *source, struct scene *scene)
+char *input_override(const char *image)
 {
     const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = (char *)image};
     struct growing_text input = {NULL, 0, 0, false};
     growing_text_add(&input, "input.path=");
     tree_write_flow(&path, &input);
-    char *text = growing_text_end(&input);
+    return growing_text_end(&input);
+}
+
+sonject_status campaign_read_base(struct sonject_campaign *campaign, const char *image,
+                                  struct scene_source *source, struct scene *scene)
+{
+    char *text = input_override(image);
     CHECK_MEMORY(campaign->report, text, "an image's scene");
     source->overrides[source->override_count++] = text;
     source->path = campaign->campaign.scene_path;
@@ -107,11 +112,19 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     CHECK_MEMORY(campaign->report, source.overrides, "an image's scene");
     for (size_t i = 0; i < plan->key_count; i++)
         source.overrides[i] = plan->keys[i].text;
-    const sonject_status status =
-        campaign_read_base(campaign, campaign->campaign.swaths[plan->swath].path, &source, scene);
+    const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
+    sonject_status status = campaign_read_base(campaign, swath->path, &source, scene);
     if (status != SONJECT_OK)
         place_message(campaign, plan);
     free(source.overrides);
+    if (status == SONJECT_OK && !isnan(campaign->campaign.grey_db[0]) &&
+        scene->transfer.kind == SONJECT_TRANSFER_DECIBEL) {
+        scene_clear(scene);
+        status = input_failure(campaign->report, campaign->campaign.path,
+                               "grey: the numbers of %s are dB already (input.transfer): leave "
+                               "grey out",
+                               swath->written);
+    }
     return status;
 }
 

@@ -118,12 +118,15 @@ static json_t *record_of(const struct sonject_campaign *campaign,
     const struct image_plan *plan = &image->plan;
     const struct campaign *drawn = &campaign->campaign;
     const bool has_target = plan->category >= CATEGORY_TARGET;
+    const char *path = drawn->swaths[plan->swath].written;
+    char *input = input_override(path);
     json_t *keys = json_array();
+    json_append(&keys, input ? json_string(input) : NULL);
+    free(input);
     for (size_t i = 0; i < plan->key_count; i++)
         json_append(&keys, json_string(plan->keys[i].text));
     json_t *place = JSON_OBJECT(
-        {"path", json_string(drawn->swaths[plan->swath].written)},
-        {"hash", json_string(campaign->swath_hashes[plan->swath])},
+        {"path", json_string(path)}, {"hash", json_string(campaign->swath_hashes[plan->swath])},
         {"row", json_count(plan->chip.first_row)}, {"column", json_count(plan->chip.first_column)},
         {"rows", json_count(plan->chip.rows)}, {"columns", json_count(plan->chip.columns)});
     return JSON_OBJECT(
@@ -183,6 +186,8 @@ static sonject_status write_file(struct sonject_campaign *campaign, struct campa
                                     .swath = &parts->swath,
                                     .result = result,
                                     .image_name = parts->labels.file_name,
+                                    .chip = &image->plan.chip,
+                                    .whole = &image->swath.layout,
                                     .jpeg_quality = jpeg_quality_of(campaign, image)};
     static const enum layer layers[OUTPUT_KINDS] = {
         [OUTPUT_HIGHLIGHT] = LAYER_HIGHLIGHT, [OUTPUT_SHADOW] = LAYER_SHADOW,

@@ -30,8 +30,8 @@ static size_t split_but(const struct data_set *set, size_t one, size_t other, bo
 }
 
 /* Names the splits train and val for trainers. Where none is called so, train is the first split
- * without other use, and val the last one, or else the test split. Folders are relative to
- * data.yaml. */
+ * without other use, and val the last one, or else train again, for tests stay unseen. Folders are
+ * relative to data.yaml. */
 sonject_status write_yolo_card(const struct data_set *set)
 {
     struct growing_text text = {NULL, 0, 0, false};
@@ -49,7 +49,7 @@ sonject_status write_yolo_card(const struct data_set *set)
     if (val == count)
         val = split_but(set, test, train, true);
     if (val == count) {
-        val = test < count ? test : train;
+        val = train;
         report_log(set->report,
                    "data.yaml uses %s/images also for validation, since no split is left for it; "
                    "for validation on images of its own, add val to the campaign's splits",

@@ -98,7 +98,7 @@ static sonject_status add_set_value(struct statistics_page *page, const char *te
     if (bracket)
         memmove(key + 8, bracket, strlen(bracket) + 1);
     if (strncmp(key, "patch", 5) == 0 || strcmp(key, "injection.seed") == 0 ||
-        !text_to_number(text + length + 1, &value, &rest))
+        strcmp(key, "input.path") == 0 || !text_to_number(text + length + 1, &value, &rest))
         return SONJECT_OK;
     return add_value(page, key, rest + strspn(rest, " "), value);
 }

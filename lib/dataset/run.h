@@ -74,7 +74,9 @@ struct run_facts {
     json_t *files;          /* files written so far, as file_list_add lists them */
     json_t *page;           /* data of report.html besides truth; see write_layers, note_result */
     const char *image_name;
-    uint32_t label_formats; /* sum of sonject_labels */
+    const struct region *chip;         /* the image's place in `whole`; NULL: the swath's patch */
+    const struct raster_layout *whole; /* layout of the swath that a chip was cut out of */
+    uint32_t label_formats;            /* sum of sonject_labels */
     double read_s, write_s, total_s;
     int jpeg_quality; /* JPEG quality of the image; 0: without loss */
 };

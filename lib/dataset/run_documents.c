@@ -58,8 +58,8 @@ static json_t *level_document(const sonject_object_params *object,
 /* Returns the edge that a box touches: "swath", "patch" where the swath goes on, or null. */
 static json_t *cut_document(const struct run_facts *facts, bool is_cut, const sonject_box *box)
 {
-    const struct region *patch = &facts->swath->patch;
-    const struct raster_layout *layout = &facts->swath->layout;
+    const struct region *patch = facts->chip ? facts->chip : &facts->swath->patch;
+    const struct raster_layout *layout = facts->chip ? facts->whole : &facts->swath->layout;
     const bool goes_on = (box->first_row == 0 && patch->first_row > 0) ||
                          (box->first_column == 0 && patch->first_column > 0) ||
                          (box->first_row + box->rows == patch->rows &&

@@ -78,8 +78,7 @@ with tempfile.TemporaryDirectory() as name:
     records = [json.loads(path.read_text())
                for path in sorted(folder.glob("set/*/records/*.json"))[:RUNS]]
     runs = [command(folder, "run", "scene.yaml", "-o", f"run{record['id']}", *(
-        part for text in [*record["set"], f"input.path={record['swath']['path']}"]
-        for part in ("--set", text))) for record in records]
+        part for text in record["set"] for part in ("--set", text))) for record in records]
     bare = min(command(folder, "devices") for _ in range(3))
     print(f"{IMAGES} images of 256 x 256: {inside['images_per_second']:.1f} a second, "
           f"{IMAGES / whole:.1f} with the process's start and the documents of the whole; "

@@ -246,8 +246,8 @@ def test_trainers_of_yolo_find_images_and_labels(whole):
     """By the rules of Ultralytics, paths begin at data.yaml's folder, and `labels` replaces `images` in a label's path."""
     card = [line.split(": ", 1) for line in (whole / "data.yaml").read_text().splitlines() if line[0] != "#"]
     folders = dict(card[: [entry[0] for entry in card].index("names:")])
-    # there is no split for validation, so the test split serves
-    assert folders == {"train": "train/images", "val": "test/images", "test": "test/images"}
+    # there is no split for validation, and tests stay unseen
+    assert folders == {"train": "train/images", "val": "train/images", "test": "test/images"}
     for folder in folders.values():
         found = sorted((whole / folder).iterdir())
         assert len(found) == IMAGES // 2
@@ -278,7 +278,7 @@ def test_clutter_need_not_be_labelled(ground, command, whole):
 
 
 @pytest.mark.parametrize("splits, train, val, test", [
-    ("test: 0.2, learn: 0.8", "learn", "test", "test"), ("validation: 0.2, a: 0.6, test: 0.2", "a", "validation", "test"),
+    ("test: 0.2, learn: 0.8", "learn", "learn", "test"), ("validation: 0.2, a: 0.6, test: 0.2", "a", "validation", "test"),
     ("val: 0.5, test: 0.5", "val", "val", "test"), ("a: 0.5, test: 0.2, b: 0.3", "a", "b", "test")])
 def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val, test):
     name = splits.replace(": ", "").replace(", ", "")
@@ -289,7 +289,7 @@ def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val
         ground / name / "data.yaml").read_text()
 
 
-@pytest.mark.parametrize("splits, told", [("all: 1", "all"), ("train: 0.5, val: 0.5", None), ("train: 0.5, test: 0.5", "test")])
+@pytest.mark.parametrize("splits, told", [("all: 1", "all"), ("train: 0.5, val: 0.5", None), ("train: 0.5, test: 0.5", "train")])
 def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground, command, splits, told):
     done = command("campaign", "campaign.yaml", "-o", f"validates_{told}", "--set", f"splits={{{splits}}}", "--set", "images=2",
                    "--set", "chip={rows: 16, columns: 16}", "--verbose")
@@ -379,13 +379,30 @@ def test_one_image_alone_is_the_same(command, whole, ground):
 def test_the_record_of_an_image_is_a_run(command, whole, ground):
     record = next(each for each in records(whole) if each["target"] == TARGETS[1])
     place = record["swath"]
-    settings = [part for text in [*record["set"], f"input.path={place['path']}"]
-                for part in ("--set", text)]
-    answer = command("run", "scene.yaml", "-o", "run", *settings)
+    settings = [part for text in record["set"] for part in ("--set", text)]
+    other = next(f"swath{i}.png" for i in range(3) if place["path"] != f"swath{i}.png")
+    answer = command("run", "scene.yaml", "-o", "run", "--set", f"input.path={other}", *settings)
     assert answer.returncode == 0, answer.stderr
     chip = read_png(ground / "run" / "image.png")[
         place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
     assert numpy.array_equal(chip, read_png(whole / of_image(record, "images", ".png")))
+
+
+def test_what_a_chip_cuts_goes_on_in_its_swath(whole, ground):
+    told = set()
+    for record in records(whole):
+        place = record["swath"]
+        end = read_png(ground / place["path"]).shape
+        for thing in json.loads((whole / of_image(record, "truth", ".json")).read_text())["objects"]:
+            box = thing["shadow"]
+            if not thing["shadow_cut"]:
+                continue
+            goes_on = (box["row"] == 0 < place["row"] or box["column"] == 0 < place["column"] or
+                       box["row"] + box["rows"] == CHIP < end[0] - place["row"] or
+                       box["column"] + box["columns"] == CHIP < end[1] - place["column"])
+            assert thing["shadow_cut_by"] == ("patch" if goes_on else "swath")
+            told.add(thing["shadow_cut_by"])
+    assert "patch" in told
 
 
 def test_shards_and_merge_are_one_run(command, whole, ground):
