@@ -269,7 +269,7 @@ static sonject_status read_group(struct reader *reader, const struct tree_node *
 #define STRUCTURE struct part_place
 static const struct field part_place_fields[] = {
     {"along", "place along the nose of the object or group", QUANTITY(along_m, LENGTH), COORDINATE},
-    {"across", "place along the y axis of the object or group, to which heading turns the nose",
+    {"across", "place to the left of the nose of the object or group, seen from above",
      QUANTITY(across_m, LENGTH), COORDINATE},
     {"up", "place along the z axis of the object or group, which points up when level",
      QUANTITY(up_m, LENGTH), COORDINATE},
@@ -285,7 +285,8 @@ static const struct field part_fields[] = {
     {"at", "place of the part's centre in the object or group; by default the origin",
      .kind = FIELD_SECTION, .section = &part_place_section,
      .offset = offsetof(struct part_text, place)},
-    TURN_FIELDS("heading of the nose, from the object's or group's nose towards its y axis"),
+    TURN_FIELDS(
+        "heading of the nose, from the object's or group's nose to the left, seen from above"),
     SURFACE_FIELD("surface of the part; by default that of the object or group"),
     {"parts", "parts of a group, placed and turned as one, instead of one shape",
      SPECIAL(read_group, "list")},
