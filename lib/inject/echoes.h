@@ -16,6 +16,7 @@ struct object_echo {
     float *energy;                    /* expected cross-section, rough and smooth part, m^2 */
     float *lost;                      /* seabed energy that the object hides, m^2 */
     uint8_t *covered;                 /* 1 where some ray of the pixel hit the object */
+    size_t lobe_rows, lobe_columns;   /* pixels from these that the echo's main lobe may reach */
     double peak_energy, peak_range_m; /* peak of the echo, between pixels too: m^2, 0 if none, and
                                          its processor range */
 };
@@ -90,8 +91,8 @@ bool has_beam_shadows(const struct tracer *tracer);
 void response_of_pings(struct point_response *response, const struct tracer *tracer);
 
 /* Returns complex amplitudes of the lines of SEABED, from the measured complex reflectivity: its
- * own phases instead of new speckle. An amplitude is the root of the energy in view, the lines'
- * second plane, times the reflectivity of the bin's pixel. The scale keeps the image's mean energy
+ * own phases instead of new speckle. An amplitude is the root of the mean energy in view there
+ * times the reflectivity of the bin's pixel. The scale keeps the image's mean energy
  * what speckle would give. The result has two planes, for free(); NULL where memory is out. */
 float *coherent_seabed_lines(const struct tracer *tracer, const struct echo_request *request,
                              const struct impulse_lines *lines);

@@ -12,12 +12,15 @@
 #define POINTS_PER_RESOLUTION 4 /* a parabola in dB between points errs by 0.02 dB */
 #define MARGIN                2 /* points around the tile */
 
-/* Returns points every `step` cells that cover a tile, whose cells have another size. */
-static struct span points_over(struct span tile, double cells_per_tile_cell, int32_t step)
+/* Returns points every `step` cells that cover a tile, whose cells have another size, and the cells
+ * to both sides into which its echo may be shifted. */
+static struct span points_over(struct span tile, double cells_per_tile_cell, int32_t step,
+                               double shift_cells)
 {
+    const int32_t margin = (int32_t)ceil(shift_cells / step) + MARGIN;
     struct span points;
-    points.first = (int32_t)floor(tile.first * cells_per_tile_cell / step) - MARGIN;
-    points.count = (int32_t)ceil((tile.first + tile.count) * cells_per_tile_cell / step) + MARGIN -
+    points.first = (int32_t)floor(tile.first * cells_per_tile_cell / step) - margin;
+    points.count = (int32_t)ceil((tile.first + tile.count) * cells_per_tile_cell / step) + margin -
                    points.first;
     return points;
 }
@@ -41,9 +44,11 @@ static sonject_status peak_lattice_init(struct peak_lattice *lattice, const stru
         cross_range_energy_width(&tracer->response, fmax(range, view->first_range_m)), strip);
     const int32_t bins = cells_of(range_energy_width(&tracer->response), bin);
     const struct span rows =
-        points_over(tile->strips, (double)grid->strips_per_row / tile->strips_per_row, strips);
+        points_over(tile->strips, (double)grid->strips_per_row / tile->strips_per_row, strips,
+                    cross_range_shift(&tracer->response, view->farthest_m) / strip);
     const struct span columns =
-        points_over(tile->bins, (double)grid->bins_per_pixel / tile->bins_per_pixel, bins);
+        points_over(tile->bins, (double)grid->bins_per_pixel / tile->bins_per_pixel, bins,
+                    range_shift(&tracer->response) / bin);
     memset(lattice, 0, sizeof *lattice);
     lattice->grid.strips_per_row = (uint32_t)strips;
     lattice->grid.bins_per_pixel = (uint32_t)bins;
@@ -199,7 +204,8 @@ static void add_window(float *patch, const struct echoes *echoes, const float *w
             patch[row * echoes->columns + first_column + column] += window[row * columns + column];
 }
 
-/* Marks the window's pixels in which some ray met the object. */
+/* Marks the window's pixels in which some ray met the object. The echo lies within the response's
+ * width of these, or where the response shifts it. */
 static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
                          const float *footprint, size_t rows)
 {
@@ -247,7 +253,14 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
     THEN(status, form_lines_finish(&lines, echo->energy, echo->lost));
     form_lines_end(&lines);
     if (status == SONJECT_OK) {
+        const struct patch_view *view = &tracer->view;
+        const struct point_response *response = &tracer->response;
+        const double along = cross_range_energy_width(response, view->farthest_m) +
+                             cross_range_shift(response, view->farthest_m);
+        const double across = range_energy_width(response) + range_shift(response);
         add_window(echoes->lost_energy, echoes, echo->lost, echo->first_column, echo->columns);
+        echo->lobe_rows = (size_t)fmax(1.0, floor(along / view->row_spacing_m));
+        echo->lobe_columns = (size_t)fmax(1.0, floor(across / view->column_spacing_m));
         mark_covered(echo, &tile->grid, tile->plane[TILE_FOOTPRINT], echoes->rows);
     }
     return status;

@@ -26,16 +26,15 @@ static bool box_is_cut(const sonject_box *box, const struct echoes *echoes)
                              box->first_column + box->columns == echoes->columns);
 }
 
-/* Returns whether a ray of the pixel or of a neighbour met the object. Side lobes do not count. */
-static bool is_on_object(const struct object_echo *echo, size_t rows, size_t row, size_t column)
+/* Returns whether some ray met the object so near that the pixel is of its echo's main lobe. Side
+ * lobes do not count. */
+static bool is_of_lobe(const struct object_echo *echo, size_t rows, size_t row, size_t column)
 {
     const size_t local = column - echo->first_column;
-    const size_t low_row = row > 0 ? row - 1 : 0;
-    const size_t high_row = row + 1 < rows ? row + 1 : row;
-    const size_t low = local > 0 ? local - 1 : 0;
-    const size_t high = local + 1 < echo->columns ? local + 1 : local;
-    for (size_t r = low_row; r <= high_row; r++)
-        for (size_t c = low; c <= high; c++)
+    const size_t low_row = row > echo->lobe_rows ? row - echo->lobe_rows : 0;
+    const size_t low = local > echo->lobe_columns ? local - echo->lobe_columns : 0;
+    for (size_t r = low_row; r <= row + echo->lobe_rows && r < rows; r++)
+        for (size_t c = low; c <= local + echo->lobe_columns && c < echo->columns; c++)
             if (echo->covered[r * echo->columns + c])
                 return true;
     return false;
@@ -90,7 +89,7 @@ static void find_object(const struct patch_level *level, double ceiling,
             energy += levels.own;
             if (levels.own > levels.background && levels.own > levels.others)
                 dominant += levels.own;
-            if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
+            if (levels.own > levels.background && is_of_lobe(echo, echoes->rows, row, column)) {
                 result->highlight[i] = 255;
                 result->labels[i] = label;
                 box_include(&truth->highlight, row, column);

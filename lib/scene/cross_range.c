@@ -133,6 +133,15 @@ double cross_range_energy_reach(const struct point_response *response, double ra
     return along_track_energy_reach(response, share) + motion_spread(response, share);
 }
 
+double cross_range_shift(const struct point_response *response, double range_m)
+{
+    if (response->cross_range_table)
+        return response_table_reach(response->cross_range_table, LOBE_LOSS);
+    if (response->array_length_m > 0.0)
+        return largest_shift(response, range_m / response->range_ratio);
+    return response->motion ? motion_spread(response, LOBE_LOSS) : 0.0;
+}
+
 double cross_range_tail(const struct point_response *response, double range_m)
 {
     if (response->motion)

@@ -283,6 +283,14 @@ double range_energy_width(const struct point_response *response)
     return pulses[response->pulse_kind].energy_width(response);
 }
 
+double range_shift(const struct point_response *response)
+{
+    return response->pulse_kind == SONJECT_PULSE_TABLE
+               ? response_table_reach(response->pulse_table, LOBE_LOSS) *
+                     response->metres_per_position
+               : 0.0;
+}
+
 double range_energy_reach(const struct point_response *response, double share)
 {
     return pulses[response->pulse_kind].energy_reach(response, share);

@@ -14,6 +14,7 @@
 #include "scene/response_table.h"
 
 #define MARGIN_ENERGY_SHARE 0.005 /* share of |W|^2 and |G|^2 beyond a grid's margins */
+#define LOBE_LOSS           0.1   /* share of a measured W or G outside its main lobe, at most */
 #define MOTION_SHARES       3
 
 /* The pulses: ROW(number, after SONJECT_PULSE_; word in scene files). The functions of
@@ -106,6 +107,10 @@ bool range_response_is_real(const struct point_response *response);
 /* Returns the integral of |G|^2 over r, m: sqrt(pi) sigma = 1.0645 c / 2B for the Gaussian. */
 double range_energy_width(const struct point_response *response);
 
+/* Returns how far, m, from a point the main lobe of a measured G lies at most; 0 for other pulses.
+ */
+double range_shift(const struct point_response *response);
+
 /* Returns the half width, m, with all but `share` of that integral; at least 3 resolutions. */
 double range_energy_reach(const struct point_response *response, double share);
 
@@ -124,6 +129,10 @@ double cross_range_energy_width(const struct point_response *response, double ra
 /* Returns the half width, m, beyond which less than `share` of that integral lies. */
 double cross_range_energy_reach(const struct point_response *response, double range_m,
                                 double share);
+
+/* Returns how far, m, from a point the main lobe of its echo lies at most, moved there by a turned
+ * array, residual motion or a measured response; 0 for the others. */
+double cross_range_shift(const struct point_response *response, double range_m);
 
 /* Returns the half width, m, that glints are spread over, to where side lobes are below -60 dB;
  * infinite with residual motion. */

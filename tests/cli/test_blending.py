@@ -367,3 +367,44 @@ def test_echoes_in_the_image_move_no_levels(sonject, tmp_path, echo):
         levels.append([decibels(intensity[read_png(tmp_path / str(number) / f"{part}.png") > 0].mean())
                        for part in ("highlight", "shadow")])
     assert numpy.abs(numpy.subtract(*levels)).max() < 0.2, levels
+
+
+MOVED = """\
+sonject: 1
+input:
+  uniform: {rows: 160, columns: 192}
+  geometry: {row_spacing: 10 cm, column_spacing: 5 cm, first_slant_range: 60 m}
+sonar: {altitude: 10 m, bandwidth: 10 kHz, SONAR}
+injection: {noise_floor: -20 dB}
+objects:
+  - {shape: sphere, diameter: 0.5 m, material: {reflection: 0, lambert: 0.1}, level: {over_seabed: 14 dB}}
+"""
+
+
+# A turned array looks 1.13 m ahead at 65 m. Pings 0.4 m apart have lobes every 1.24 m, and this yaw looks at the first.
+@pytest.mark.parametrize("sonar, moved_m", [
+    ("kind: real, array: {length: 0.5 m}, frequency: 100 kHz", 0),
+    ("kind: real, array: {length: 2 m, heading: 1 deg}, frequency: 200 kHz", 1.13),
+    ("resolution: 15 cm, frequency: 100 kHz, motion: {yaw: {advance: 0.4 m, bias: 1.08 deg}}", 1.24),
+    ("resolution: 15 cm, frequency: 100 kHz, motion: {sway: [{amplitude: 0.3 m, wavelength: 94.2 m}]}", None),
+    ("resolution: 15 cm, frequency: 100 kHz, measured_response: response.csv", 1.0)])
+def test_objects_are_labelled_where_the_response_puts_their_echoes(sonject, tmp_path, sonar, moved_m):
+    """The level counts there, and all pixels in which the echo outshines the seabed are the highlight."""
+    along = numpy.arange(-40, 41) / 20
+    (tmp_path / "response.csv").write_text("along_track_m,real\n" + "".join(
+        f"{x:g},{numpy.exp(-((x - 1) / 0.2)**2):.6f}\n" for x in along))
+    (tmp_path / "scene.yaml").write_text(MOVED.replace("SONAR", sonar))
+    sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
+    thing = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
+    energy = images.read_tiff(tmp_path / "out" / "energy.tif").astype(float)
+    over_seabed = energy / numpy.median(energy)
+    peak = numpy.unravel_index(energy.argmax(), energy.shape)
+    print(thing["row"], peak, decibels(over_seabed.max()), thing["highlight"])
+    # the peak lies between pixels, and the seabed adds 0.2 dB
+    assert decibels(over_seabed.max()) == pytest.approx(14, abs=0.7)
+    if moved_m is not None:
+        assert (peak[0] - thing["row"]) * 0.1 == pytest.approx(moved_m, abs=0.15)
+    highlight = read_png(tmp_path / "out" / "highlight.png") > 0
+    assert highlight[peak]
+    # the echo outshines the seabed that is left: between 1, shadow, and 2, none
+    assert not highlight[over_seabed < 0.9].any() and highlight[over_seabed > 2.2].mean() > 0.9

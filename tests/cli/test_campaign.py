@@ -405,6 +405,15 @@ def test_what_a_chip_cuts_goes_on_in_its_swath(whole, ground):
     assert "patch" in told
 
 
+def test_grey_levels_are_not_of_decibels(command, ground):
+    (ground / "decibels.yaml").write_text(SCENE.replace(
+        "input:\n", "input:\n  transfer: {kind: decibel, parameter: 0.3, offset: -80}\n"))
+    for verb in ("check", "campaign"):
+        answer = command(verb, "campaign.yaml", *(["-o", "decibels"] if verb == "campaign" else []),
+                         "--set", "scene=decibels.yaml", "--set", "grey=[-60 dB, 0 dB]")
+        assert_refused(answer, 3, "grey: the numbers of swath0.png are dB already")
+
+
 def test_shards_and_merge_are_one_run(command, whole, ground):
     for shard in ("2/2", "1/2"):
         answer = command("merge", "shards")
