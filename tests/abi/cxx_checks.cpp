@@ -64,6 +64,12 @@ static void check_errors(const sonject::context &context)
         expect(false, "missing scene files throw");
     } catch (const sonject::error &) {
     }
+    try {
+        scene.set("sonar.altitude", std::string("10 m\0 or so", 11));
+        expect(false, "texts that C would cut throw");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_ARGUMENT, "as arguments");
+    }
     expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
     expect(sonject::keys(context, SONJECT_KEYS_OF_CAMPAIGNS).find("chip.spread") !=
                std::string::npos,

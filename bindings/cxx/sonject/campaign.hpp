@@ -31,7 +31,7 @@ class campaign
         sonject_scene_read_params params = defaults<sonject_scene_read_params>();
         params.overrides = texts.data();
         params.override_count = static_cast<std::uint32_t>(texts.size());
-        check(sonject_campaign_read(context_, path.c_str(), &params, &handle_));
+        check(sonject_campaign_read(context_, detail::c_text(path), &params, &handle_));
     }
     campaign(campaign &&other) noexcept : context_(other.context_), handle_(other.handle_)
     {
@@ -105,7 +105,7 @@ inline void merge_campaign(const context &context, const std::string &folder,
                            const progress &callback = progress())
 {
     detail::tell_progress(context.get(), callback, [&](sonject_progress_function tell, void *user) {
-        return sonject_campaign_merge(context.get(), folder.c_str(), tell, user);
+        return sonject_campaign_merge(context.get(), detail::c_text(folder), tell, user);
     });
 }
 
@@ -117,7 +117,8 @@ inline void fit_campaign(const context &context, const std::string &path,
                          const progress &callback = progress())
 {
     detail::tell_progress(context.get(), callback, [&](sonject_progress_function tell, void *user) {
-        return sonject_campaign_fit(context.get(), path.c_str(), reading, &params, tell, user);
+        return sonject_campaign_fit(context.get(), detail::c_text(path), reading, &params, tell,
+                                    user);
     });
 }
 

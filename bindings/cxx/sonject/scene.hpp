@@ -45,7 +45,7 @@ class scene
         const std::vector<const char *> texts = detail::pointers_to(overrides);
         params.overrides = texts.data();
         params.override_count = static_cast<std::uint32_t>(texts.size());
-        check(sonject_scene_read(context_, path.c_str(), &params, &handle_));
+        check(sonject_scene_read(context_, detail::c_text(path), &params, &handle_));
     }
 
     /* Takes over a handle that the C interface made with that context. */
@@ -82,7 +82,7 @@ class scene
     /* Sets a key of the scene, one of tools/scenes/KEYS.md: "sonar.altitude", "10 m". */
     void set(const std::string &key, const std::string &value)
     {
-        check(sonject_scene_set(handle_, key.c_str(), value.c_str()));
+        check(sonject_scene_set(handle_, detail::c_text(key), detail::c_text(value)));
     }
     /* Sets a key to a number in its SI unit (angles: degrees), with all digits. */
     void set(const std::string &key, double value)
@@ -111,16 +111,16 @@ class scene
                 1 + static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
         if (column_count == 0 || values.size() % column_count != 0)
             throw error(SONJECT_ERROR_ARGUMENT, "a table needs whole rows of its columns");
-        check(sonject_scene_set_table(handle_, key.c_str(),
-                                      columns.empty() ? nullptr : columns.c_str(), values.data(),
-                                      values.size() / column_count, column_count));
+        check(sonject_scene_set_table(handle_, detail::c_text(key),
+                                      columns.empty() ? nullptr : detail::c_text(columns),
+                                      values.data(), values.size() / column_count, column_count));
     }
     /* Returns the value of a key as JSON, such as "10.0", or "null" if the scene does not set it.
      * The key "" is the whole scene. See sonject_scene_get. */
     std::string get(const std::string &key) const
     {
         detail::text json;
-        check(sonject_scene_get(handle_, key.c_str(), json.out()));
+        check(sonject_scene_get(handle_, detail::c_text(key), json.out()));
         return json.copy();
     }
     std::uint32_t object_count() const
@@ -161,7 +161,7 @@ class scene
              std::uint32_t labels = 0) const
     {
         sonject_run_params params = defaults<sonject_run_params>();
-        params.folder = folder.c_str();
+        params.folder = detail::c_text(folder);
         params.labels = labels;
         return run(params, callback);
     }
@@ -171,7 +171,7 @@ class scene
                    const progress &callback = progress()) const
     {
         sonject_run_params params = defaults<sonject_run_params>();
-        params.folder = folder.c_str();
+        params.folder = detail::c_text(folder);
         params.shard_index = shard;
         params.shard_count = shards;
         run(params, callback);
@@ -181,7 +181,7 @@ class scene
     bool merge(const std::string &folder, const progress &callback = progress()) const
     {
         sonject_merge_params params = defaults<sonject_merge_params>();
-        params.folder = folder.c_str();
+        params.folder = detail::c_text(folder);
         return detail::was_finished(
             context_, callback, [&](sonject_progress_function tell, void *user, int *answer) {
                 return sonject_merge(context_, handle_, &params, tell, user, answer);
@@ -192,7 +192,7 @@ class scene
     void trace(const std::string &file, const progress &callback = progress()) const
     {
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
-            return sonject_trace(context_, handle_, file.c_str(), tell, user);
+            return sonject_trace(context_, handle_, detail::c_text(file), tell, user);
         });
     }
 
@@ -210,7 +210,7 @@ class scene
     void run_elements(const std::string &folder, const progress &callback = progress()) const
     {
         sonject_run_params params = defaults<sonject_run_params>();
-        params.folder = folder.c_str();
+        params.folder = detail::c_text(folder);
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
             return sonject_elements_run(context_, handle_, &params, tell, user);
         });
@@ -219,7 +219,7 @@ class scene
     /* Writes the synthetic seabed that is the scene's input. */
     void write_seabed(const std::string &path) const
     {
-        check(sonject_seabed_write(context_, handle_, path.c_str()));
+        check(sonject_seabed_write(context_, handle_, detail::c_text(path)));
     }
 
   private:
@@ -236,7 +236,7 @@ inline scene scene_of_text(const context &context, const std::string &text,
                            const std::string &name = "scene")
 {
     sonject_scene_read_params params = defaults<sonject_scene_read_params>();
-    params.text = text.c_str();
+    params.text = detail::c_text(text);
     return scene(context, name, std::vector<std::string>(), params);
 }
 
@@ -258,7 +258,7 @@ inline std::vector<std::string> bands(
     detail::text lines;
     params.overrides = texts.data();
     params.override_count = static_cast<std::uint32_t>(texts.size());
-    context.check(sonject_scene_bands(context.get(), path.c_str(), &params, lines.out()));
+    context.check(sonject_scene_bands(context.get(), detail::c_text(path), &params, lines.out()));
     const std::string all = lines.copy();
     std::vector<std::string> names;
     for (std::size_t start = 0; start < all.size();) {

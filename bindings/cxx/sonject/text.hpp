@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <sonject/error.hpp>
 #include <sonject/run.h>
 
 namespace sonject
@@ -39,12 +40,20 @@ class text
     char *text_;
 };
 
+/* Returns a text as C takes it. Throws where C would see only the beginning. */
+inline const char *c_text(const std::string &text)
+{
+    if (text.find('\0') != std::string::npos)
+        throw error(SONJECT_ERROR_ARGUMENT, "a text has a character 0, where it would end");
+    return text.c_str();
+}
+
 /* Makes an array of C texts; the originals must outlive it. */
 inline std::vector<const char *> pointers_to(const std::vector<std::string> &texts)
 {
     std::vector<const char *> pointers;
     for (const std::string &each : texts)
-        pointers.push_back(each.c_str());
+        pointers.push_back(c_text(each));
     return pointers;
 }
 
