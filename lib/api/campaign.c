@@ -43,8 +43,10 @@ void sonject_campaign_release(sonject_campaign **campaign)
 
 sonject_status sonject_campaign_image_count(const sonject_campaign *campaign, uint64_t *count)
 {
-    if (!campaign || !count)
+    if (!campaign)
         return SONJECT_ERROR_ARGUMENT;
+    if (!count)
+        return null_argument(campaign->report, "count");
     *count = campaign->campaign.images;
     return SONJECT_OK;
 }

@@ -73,8 +73,10 @@ sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
     static const sonject_pixel_kind kinds[] = {[PIXEL_UINT8] = SONJECT_PIXELS_UINT8,
                                                [PIXEL_UINT16] = SONJECT_PIXELS_UINT16,
                                                [PIXEL_FLOAT32] = SONJECT_PIXELS_AMPLITUDE};
-    if (!result || !rows || !columns || !image_kind)
+    if (!result)
         return SONJECT_ERROR_ARGUMENT;
+    if (!rows || !columns || !image_kind)
+        return null_argument(result->report, "rows, columns and image_kind");
     *rows = result->result.rows;
     *columns = result->result.columns;
     *image_kind = result->stored              ? kinds[result->stored_type]

@@ -197,9 +197,11 @@ sonject_status sonject_keys(sonject_context *context, uint32_t of, char **json)
 sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)
 {
     const struct scene *used;
-    if (!scene || !count)
+    if (!scene)
         return SONJECT_ERROR_ARGUMENT;
     scene->report->message[0] = '\0';
+    if (!count)
+        return null_argument(scene->report, "count");
     CHECK(scene_use(scene->report, scene, &used));
     *count = used->object_count;
     return SONJECT_OK;

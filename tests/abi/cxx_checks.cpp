@@ -52,6 +52,9 @@ static void check_errors(const sonject::context &context)
     scene.set("injection.interactions", 2);
     scene.set("injection.order_energies", true);
     expect(scene.get("injection.order_energies") == "true", "truths are words");
+    expect(sonject_scene_object_count(scene.get(), nullptr) == SONJECT_ERROR_ARGUMENT &&
+               std::string(sonject_context_message(context.get())).find("count") == 0,
+           "the message is of the last failure");
     scene.set("sonar.altitude", -1.0);
     try {
         scene.object_count();
