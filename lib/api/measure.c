@@ -42,7 +42,8 @@ static sonject_status take_amplitudes(struct report *report, const sonject_pixel
     THEN(status,
          find_magnitudes(report, &swath, PIXEL_FLOAT32, swath.pixels, &measured->amplitudes));
     for (size_t i = 0; status == SONJECT_OK && i < measured->rows * measured->columns; i++)
-        measured->amplitudes[i] = fabsf(measured->amplitudes[i]);
+        if (measured->amplitudes[i] < 0.0f)
+            status = negative_amplitude(report, "pixels", i, measured->columns);
     swath_close(&swath);
     return status;
 }

@@ -123,6 +123,15 @@ static sonject_status read_mask(struct report *report, const char *path,
     return status;
 }
 
+sonject_status negative_amplitude(struct report *report, const char *what, size_t at,
+                                  size_t columns)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: the pixel at row %zu, column %zu is a negative amplitude; numbers "
+                          "in dB need their transfer function",
+                          what, at / columns, at % columns);
+}
+
 sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
                                const struct image_options *options, struct measured *measured)
 {
@@ -151,8 +160,10 @@ sonject_status read_amplitudes(struct report *report, const sonject_measure_para
                                 bad / layout.channels % measured->columns);
     free(stored);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        linear[i] =
-            layout.channels == 2 ? hypotf(linear[2 * i], linear[2 * i + 1]) : fabsf(linear[i]);
+        if (layout.channels == 2)
+            linear[i] = hypotf(linear[2 * i], linear[2 * i + 1]);
+        else if (linear[i] < 0.0f)
+            status = negative_amplitude(report, params->image, i, measured->columns);
     measured->amplitudes = linear;
     return status;
 }

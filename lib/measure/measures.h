@@ -33,6 +33,10 @@ sonject_status measure_amplitudes(struct report *report, struct measured *measur
 sonject_status measure_file(struct report *report, const sonject_measure_params *params,
                             const struct image_options *options, sonject_measurement *measurement);
 
+/* Reports that a pixel, of `columns` in a row, is a negative amplitude. Returns INPUT. */
+sonject_status negative_amplitude(struct report *report, const char *what, size_t at,
+                                  size_t columns);
+
 /* Reads the file's amplitudes. measured: all zeros. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 sonject_status read_amplitudes(struct report *report, const sonject_measure_params *params,
                                const struct image_options *options, struct measured *measured);

@@ -139,7 +139,7 @@ def test_a_recording_is_refused(octave, scene, tmp_path):
     samples = numpy.full((96, 128), 100, "<u2")
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
     said = octave(f"try, sonject('line.xtf', '{scene}', 'input.channel', 'port', 'input.transfer.kind', 'amplitude', "
-                  "'injection.noise_floor', '-18 dB'), "
+                  "'injection.noise_floor', '-18 dB', 'input.geometry', 'from_file', 'sonar.altitude', '10 m'), "
                   "catch failure, disp(failure.message), end")
     assert said == "the image is written as .xtf, which is not read here: run the command\n"
 

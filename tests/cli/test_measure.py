@@ -257,3 +257,12 @@ def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):
     sonject.done("run", "scene.yaml", "-o", "out")
     (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
     assert ball["shadow"]["column"] < 40 + 24 and ball["shadow_visibility_db"] < -6
+
+
+def test_negative_amplitudes_are_refused(sonject, tmp_path):
+    """Their magnitudes would be measured, and those of numbers in dB mean nothing."""
+    decibels = numpy.random.default_rng(1).normal(-40, 5, (64, 64)).astype(numpy.float32)
+    decibels[0, 0] = 3
+    (tmp_path / "decibels.tif").write_bytes(tiff_bytes(decibels))
+    assert_refused(sonject("measure", "decibels.tif"), 3, "decibels.tif: the pixel at row 0, column 1 is a negative amplitude")
+    sonject.done("measure", "decibels.tif", "--transfer", "decibel:1")
