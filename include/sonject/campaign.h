@@ -143,7 +143,7 @@ typedef struct sonject_campaign_fit_params {
  * height and level over the seabed, and of the noise floor, until injected contacts measure as the
  * real ones do. It sets range_over_altitude and visible from the contacts. Contacts do not tell
  * classes' shares, headings, burial, materials and fixed sizes; these stay as they are. The fit
- * makes about 830 images, on threads as in sonject_campaign_run. path, params: as in
+ * makes about 1,250 images, on threads as in sonject_campaign_run. path, params: as in
  * sonject_campaign_read. The same inputs give the same bytes. progress may be NULL.
  * Errors: ARGUMENT, INPUT (fewer than ten contacts, labels that cannot be read, ...), DEVICE,
  * STORAGE, MEMORY, UNSUPPORTED, CANCELLED. On failure fit_params->fitted is not written. */

@@ -92,10 +92,10 @@ sonject_status fit_draws_text(const struct fit_draws *draws, struct report *repo
                               const struct fitted_selection *selection, const char *comment,
                               char **text);
 
-/* ---- The whole (fit.c), and its page (fit_page.c). */
+/* ---- The whole (fit.c), its rounds (fit_rounds.c) and its page (fit_page.c). */
 
 #define FIT_CHIPS  104 /* chips in a round */
-#define FIT_ROUNDS 8   /* rounds; the last one only shows the result */
+#define FIT_ROUNDS 12  /* rounds; the last one only shows the result */
 #define FIT_SHOWN  20  /* real chips on the page, and as many injected ones */
 
 /* All data of the page. */
@@ -119,6 +119,11 @@ struct fit {
     struct fitted_selection selection;
     struct growing_text notes; /* notes on the page, one a line; owned */
 };
+
+/* Runs all rounds: makes and measures contacts, and moves the draws. progress: NULL, or called with
+ * `user`. Errors: those of campaigns, CANCELLED. */
+sonject_status fit_run_rounds(struct fit *fit, struct device_slot *slot,
+                              sonject_progress_function progress, void *user);
 
 /* Fits a campaign; see sonject_campaign_fit, also for errors. */
 sonject_status campaign_fit(struct report *report, struct device_slot *slot,

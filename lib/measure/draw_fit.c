@@ -15,7 +15,8 @@
 #define NEAR_LEAST 0.5  /* least mean nearness of a round whose contacts are compared */
 #define OWN_ERROR  1.0  /* variance that a quantile shares with no other */
 
-/* The largest move of a round: natural logarithms of sizes, dB, and logarithms of stretches. */
+/* The largest first move: natural logarithms of sizes, dB, and logarithms of stretches. Later moves
+ * are at most a share of it, lest contacts that hardly tell sizes lead to and fro. */
 static const double most[MOVES] = {0.7, 0.7, 0.7, 20.0, 8.0, 0.5, 0.5, 0.5, 0.5, 0.5};
 
 /* The deviations of nearness: how far draws may move before contacts count less. */
@@ -32,6 +33,16 @@ double sorted_quantile(const double *sorted, size_t count, double share)
     const size_t below = (size_t)fmin(floor(place), (double)(count - 1));
     const size_t above = below + 1 < count ? below + 1 : below;
     return sorted[below] + (place - (double)below) * (sorted[above] - sorted[below]);
+}
+
+double finite_quantile(double *values, size_t count, double share)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(values[i]))
+            values[n++] = values[i];
+    qsort(values, n, sizeof *values, compare_doubles);
+    return n > 0 ? sorted_quantile(values, n, share) : NAN;
 }
 
 /* Returns the standard normal distribution's quantile, after Hastings (1955), to 4.5e-4. */
@@ -287,6 +298,7 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
     double *now = buffers;
     double *tried = buffers + RESIDUALS;
     double *slopes = tried + RESIDUALS; /* MOVES x RESIDUALS */
+    const double share = 1.0 / (1.0 + fit->prior->moves);
     double damping = 1e-2;
     size_t count = find_residuals(fit, moves, now);
     double cost = sum_of_squares(now, count);
@@ -315,7 +327,7 @@ static void descend(const struct move_fit *fit, double *moves, double *buffers)
         if (!solve_symmetric(a, b, MOVES))
             return;
         for (size_t i = 0; i < MOVES; i++)
-            next[i] = fmin(fmax(moves[i] + b[i], -most[i]), most[i]);
+            next[i] = fmin(fmax(moves[i] + b[i], -most[i] * share), most[i] * share);
         count = find_residuals(fit, next, tried);
         const double next_cost = sum_of_squares(tried, count);
         const bool is_better = next_cost < cost;

@@ -78,6 +78,7 @@ struct move_prior {
     double shift[FITTED_KINDS];   /* sum so far */
     double stretch[FITTED_KINDS]; /* sum so far, natural logarithm */
     double contacts; /* number of real ones; with few, the campaign's spreads count more */
+    double moves;    /* number of earlier moves; the n-th is at most 1/n as large as the first */
 };
 
 /* Finds the quantiles of real contacts: 5 to 95 % of 90 or more that show an extent, 20 to 80 %
@@ -92,6 +93,10 @@ double quantile_error(double share, double middle_half, double count);
 /* Returns the quantile, at a share, of the distribution that ascending values come from, as often
  * too low as too high (Hyndman and Fan's eighth). Others, from few values, lie too far inside. */
 double sorted_quantile(const double *sorted, size_t count, double share);
+
+/* Returns that quantile of the finite values; NaN: there are none. Moves these to the front and
+ * sorts them. */
+double finite_quantile(double *values, size_t count, double share);
 
 /* Returns the value that a move makes of a value. */
 double draw_moved(const struct draw_move *move, double value);

@@ -26,7 +26,7 @@ chip: {{rows: {rows}, columns: {columns}, edge: 4, spread: 0.3}}
 empty: 0 # all have a target
 {visible}
 splits: {{all: 1}}
-swaths: [{{path: seabed_1.tif}}, {{path: seabed_2.tif}}]
+swaths: [{swaths}]
 draw: # of all
   objects[].heading: {{uniform: [0 deg, 360 deg]}}
   objects[].burial.fraction: {{uniform: [0, 0.3]}}
@@ -51,12 +51,14 @@ def make_seabeds(sonject, rows=300, columns=500, numbers=(1, 2)):
                      "--ripple-contrast", "0.1", "--row-spacing", "0.05", "--column-spacing", "0.05")
 
 
-def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid"), more=""):
+def campaign(draws, images, seed, rows=96, columns=160, shapes=("box", "ellipsoid"), more="",
+             swaths=("seabed_1.tif", "seabed_2.tif")):
     """Returns the text of a campaign. more: other keys of all objects."""
     level = draws.get("level")
     floor = draws.get("floor")
     return CAMPAIGN.format(
         images=images, seed=seed, rows=rows, columns=columns,
+        swaths=", ".join(f"{{path: {swath}}}" for swath in swaths),
         visible="visible: {highlight: 1.2 dB, shadow: -2.3 dB}" if level else "# whether it is seen or not",
         floor=f"injection.noise_floor: {floor} dB" if floor else "",
         targets="".join(
