@@ -18,7 +18,7 @@ IMAGES = 400  # they give a distribution's medians to a tenth of the tolerance
 
 
 # Tolerances: lengths and heights to a share, widths to another since contacts of all headings show them worse, dB.
-TOLERANCES = {100: (0.1, 0.1, 1), 30: (0.15, 0.3, 1.5), 10: (0.2, 0.4, 2)}
+TOLERANCES = {100: (0.1, 0.15, 1), 30: (0.15, 0.3, 1.5), 10: (0.2, 0.4, 2)}
 
 
 def check_fits(sonject, folder, contacts, **of_campaign):
