@@ -322,7 +322,8 @@ sonject_status grow_list(struct report *report, void *list, size_t count, size_t
 bool is_split_name(const char *name);
 
 /* Gives each swath to one split, and each split its images. Swaths that are the same side of files
- * with equal hashes count as one. Errors: INPUT, MEMORY. */
+ * with equal hashes count as one, and both sides do if a swath is the whole file. Errors: INPUT,
+ * MEMORY. */
 sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               char (*hashes)[HASH_TEXT_CAPACITY]);
 

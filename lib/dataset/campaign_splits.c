@@ -8,8 +8,8 @@
 #define SWATH_STREAM 0x30000001u /* above the streams of distributions */
 #define SPLIT_OPEN   UINT32_MAX
 
-/* Groups of swaths that show the same seabed: one side of equal files, at any frequency. A group is
- * named after its first swath. */
+/* Groups of swaths that show the same seabed: one side of equal files, at any frequency, or both if
+ * a swath takes the whole file. A group is named after its first swath. */
 struct groups {
     uint32_t *group_of; /* group of each swath; owned, with the arrays below */
     uint32_t *split_of; /* split of each group; SPLIT_OPEN: none yet */
@@ -39,13 +39,24 @@ static sonject_status take_wishes(const struct campaign *campaign, struct groups
     return SONJECT_OK;
 }
 
+static bool show_same_seabed(const struct campaign *campaign, char (*hashes)[HASH_TEXT_CAPACITY],
+                             size_t first, size_t second)
+{
+    const struct swath_plan *swaths = campaign->swaths;
+    if (strcmp(hashes[first], hashes[second]) != 0)
+        return false;
+    bool is_same = swaths[first].side == swaths[second].side;
+    for (size_t i = 0; i < campaign->swath_count && !is_same; i++)
+        is_same = swaths[i].side == 0 && strcmp(hashes[i], hashes[first]) == 0;
+    return is_same;
+}
+
 static sonject_status find_groups(const struct campaign *campaign,
                                   char (*hashes)[HASH_TEXT_CAPACITY], struct groups *groups)
 {
     for (size_t i = 0; i < campaign->swath_count; i++) {
         uint32_t first = 0;
-        while (strcmp(hashes[first], hashes[i]) != 0 ||
-               campaign->swaths[first].side != campaign->swaths[i].side)
+        while (!show_same_seabed(campaign, hashes, first, i))
             first++;
         groups->group_of[i] = first;
         groups->split_of[i] = SPLIT_OPEN;

@@ -1112,6 +1112,10 @@ HOSTILE = [
     (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),
     (["swaths[1].path=swath0.png", "swaths[0].split=train", "swaths[1].split=test"],
      "shows the same seabed as swath0.png", "swath0.png"),
+    (["swaths[2].path=swath0.png", "swaths[1].path=swath0.png", "chip.rows=48", "chip.columns=48"]
+     + [f"swaths[{i}].set={{input.geometry.nadir_column: 75, input.geometry.side: {side}, "
+        "input.geometry.first_slant_range: 0 m, input.geometry.column_spacing: 10 cm, sonar.altitude: 1 m}" for i, side in enumerate(("port", "starboard"))],
+     "swaths", "1 different swaths are too few for 2 splits"),  # the third swath shows both sides
     (["swaths[0].split=vla"], "swaths[0].split", "train, test"),
     (["splits={train: 0.5}"], "splits", "add up to 0.5"),
     (["splits={train: 1, val: 0}"], "splits.val", "must be above 0 and at most 1; leave a split without images out"),
