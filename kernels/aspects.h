@@ -33,8 +33,8 @@ FUNCTION int has_beam(const struct fan_record *fan)
 FUNCTION vfloat aspect_share(const struct fan_record *fan, RECORD_WORD track_strip, word ray,
                              vfloat jitter)
 {
-    const RECORD_WORD shift = track_strip * 0x91E10DA5u + fan->seed_low * 0x9E3779B9u;
-    const vfloat share = uniform_from(ray * 0xC13FA9A9u + SPLAT_WORD(shift)) + 0.125f * jitter;
+    const RECORD_WORD shift = track_strip * LATTICE_OF_2_1 + fan->seed_low * 0x9E3779B9u;
+    const vfloat share = lattice_uniform(ray, LATTICE_OF_2_0, shift) + 0.125f * jitter;
     return SELECT(MASK_OF(share >= 1.0f), share - 1.0f, share);
 }
 

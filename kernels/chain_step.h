@@ -214,6 +214,8 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
 {
     vfloat u, v, choice;
     three_uniforms(chain->key, chain->number, draw, &u, &v, &choice);
+    if (order == 1)
+        choice = lattice_uniform(chain->number, LATTICE_OF_2_0, chain->key.second);
     const struct chain_hit *hit = &chain->hit;
     struct chain_step step;
     step.direction = hit->back;

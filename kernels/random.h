@@ -86,4 +86,23 @@ FUNCTION void three_uniforms(struct random_key key, word ray, RECORD_WORD draw, 
     *choice = (VFLOAT_OF(((a & 511u) << 9) | (b & 511u)) + 0.5f) * 3.814697265625e-6f;
 }
 
+/* Multipliers of lattices, in units of 2^-32. With number / count as a further coordinate, points
+ * are even in two or six coordinates. The two are powers of the inverse of the plastic number. The
+ * six are the best of a random search for even pairs of coordinates of 16 to 4096 neighbours. */
+#define LATTICE_OF_2_0 0xC13FA9A9u
+#define LATTICE_OF_2_1 0x91E10DA5u
+#define LATTICE_OF_6_0 0x9E3779B9u
+#define LATTICE_OF_6_1 0x10F73FBDu
+#define LATTICE_OF_6_2 0x7202EA19u
+#define LATTICE_OF_6_3 0x2CA485C3u
+#define LATTICE_OF_6_4 0xBF1B0E5Fu
+#define LATTICE_OF_6_5 0xB63FE2CBu
+
+/* Returns a coordinate, in (0, 1), of a lattice's point. A random shift makes each point uniform.
+ */
+FUNCTION vfloat lattice_uniform(word number, RECORD_WORD multiplier, RECORD_WORD shift)
+{
+    return uniform_from(number * multiplier + SPLAT_WORD(shift));
+}
+
 #endif

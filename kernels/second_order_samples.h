@@ -63,32 +63,16 @@ FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct c
     chain->is_alive = is_open;
 }
 
-/* The samples of a strip, one in each lane: their cells, and the weights of targets there. */
-struct samples {
-    word number;
-    struct echo_cell cell;
-    struct target_weights weights;
-    vfloat chosen; /* uniform deviate for the target's part */
-    mask is_followed;
+/* The coordinates of a sample, in the order of their multipliers. */
+enum sample_coordinate {
+    IS_FOLLOWED,
+    ECHO_ALONG,
+    SEABED_PLACE,
+    TARGET_ALONG,
+    TARGET_ACROSS,
+    TARGET_PART,
+    SAMPLE_COORDINATES
 };
-
-FUNCTION struct samples aim_samples(const struct fan_record *fan,
-                                    GLOBAL const struct chain_record *chains,
-                                    GLOBAL const struct target_record *targets, int strip,
-                                    struct random_key key, word sample)
-{
-    struct samples samples;
-    vfloat along, followed;
-    samples.number = SPLAT_WORD(fan->first_ray) + sample;
-    three_uniforms(key, samples.number, 0, &along, &samples.chosen, &followed);
-    samples.cell = cell_number(fan, chains,
-                               VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) +
-                                   (float)targets->first_cell,
-                               strip_position(fan, strip) + (along - 0.5f) * fan->strip_width);
-    samples.weights = weigh_targets(targets, targets->targets, &samples.cell);
-    samples.is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < samples.weights.share);
-    return samples;
-}
 
 /* The arguments by which a strip's samples are traced. */
 struct sample_trace {
@@ -99,7 +83,54 @@ struct sample_trace {
     GLOBAL const struct sphere_record *spheres;
     struct random_key key;
     int strip;
+    RECORD_WORD shifts[SAMPLE_COORDINATES];
 };
+
+/* Draws the lattice's shift, by a draw that no sample has. */
+FUNCTION void draw_shifts(struct sample_trace *trace)
+{
+    for (int i = 0; i < SAMPLE_COORDINATES; i += 2) {
+        trace->shifts[i] = (RECORD_WORD)i;
+        trace->shifts[i + 1] = ~0u;
+        threefry_scalar(trace->key.first, trace->key.second, &trace->shifts[i],
+                        &trace->shifts[i + 1]);
+    }
+}
+
+FUNCTION vfloat sample_uniform(const struct sample_trace *trace, word number,
+                               enum sample_coordinate coordinate)
+{
+    const RECORD_WORD multipliers[SAMPLE_COORDINATES] = {LATTICE_OF_6_0, LATTICE_OF_6_1,
+                                                         LATTICE_OF_6_2, LATTICE_OF_6_3,
+                                                         LATTICE_OF_6_4, LATTICE_OF_6_5};
+    return lattice_uniform(number, multipliers[coordinate], trace->shifts[coordinate]);
+}
+
+/* The samples of a strip, one in each lane: their cells, and the weights of targets there. */
+struct samples {
+    word number;
+    struct echo_cell cell;
+    struct target_weights weights;
+    mask is_followed;
+};
+
+FUNCTION struct samples aim_samples(const struct sample_trace *trace,
+                                    GLOBAL const struct target_record *targets, word sample)
+{
+    const struct fan_record *fan = trace->fan;
+    GLOBAL const struct chain_record *chains = trace->chains;
+    struct samples samples;
+    samples.number = SPLAT_WORD(fan->first_ray) + sample;
+    const vfloat along = sample_uniform(trace, samples.number, ECHO_ALONG);
+    samples.cell = cell_number(
+        fan, chains,
+        VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) + (float)targets->first_cell,
+        strip_position(fan, trace->strip) + (along - 0.5f) * fan->strip_width);
+    samples.weights = weigh_targets(targets, targets->targets, &samples.cell);
+    const vfloat followed = sample_uniform(trace, samples.number, IS_FOLLOWED);
+    samples.is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < samples.weights.share);
+    return samples;
+}
 
 /* A path from the sonar by way of a target to the seabed. */
 struct second_order_path {
@@ -115,29 +146,29 @@ NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mas
     const struct fan_record *fan = trace->fan;
     GLOBAL const struct target_record *targets =
         targets_of(trace->chains, trace->spheres) + fan->target;
-    const struct samples samples =
-        aim_samples(fan, trace->chains, targets, trace->strip, trace->key, sample);
+    const struct samples samples = aim_samples(trace, targets, sample);
+    const word number = samples.number;
     const struct sampled_target target =
-        sample_target(targets, targets->targets, &samples.cell, &samples.weights, samples.chosen,
-                      is_sample & samples.is_followed);
+        sample_target(targets, targets->targets, &samples.cell, &samples.weights,
+                      sample_uniform(trace, number, TARGET_PART), is_sample & samples.is_followed);
     struct chain *chain = &path->chain;
-    vfloat across_x, across, uniform, unused;
-    three_uniforms(trace->key, samples.number, 1, &across_x, &across, &chain->dither);
-    two_uniforms(trace->key, samples.number, 2, &uniform, &unused);
-    const vfloat dither = chain->dither;
-    begin_chain(fan, trace->pieces, trace->objects, target.first_x + across_x * target.width,
+    const vfloat along = sample_uniform(trace, number, TARGET_ALONG);
+    const vfloat across = sample_uniform(trace, number, TARGET_ACROSS);
+    vfloat dither, unused;
+    two_uniforms(trace->key, number, 0, &dither, &unused);
+    begin_chain(fan, trace->pieces, trace->objects, target.first_x + along * target.width,
                 target.first_elevation + across * target.elevations, SPLAT(1.0f),
                 is_alone ? &target.part : 0, is_sample & samples.is_followed, chain);
     chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == target.part);
     chain->key = trace->key;
-    chain->number = samples.number;
+    chain->number = number;
     chain->dither = dither;
     const vfloat receiver_x = samples.cell.receiver_x;
     const vfloat x = 2.0f * receiver_x - chain->first_x;
     const struct seabed_line line = line_across(fan, chain->hit.point, x, receiver_x);
     const struct places places =
         places_of_cell(fan, chain, &line, &samples.cell, target.least_y - chain->hit.point.y);
-    const vfloat y = sample_place(&places, uniform);
+    const vfloat y = sample_place(&places, sample_uniform(trace, number, SEABED_PLACE));
     path->samples =
         density_of_samples(fan, trace->chains, target.weight, &samples.weights,
                            target.width * target.elevations, length_of_place(&places, y));
@@ -218,10 +249,11 @@ NOINLINE void trace_second_order_strip(const struct fan_record *fan,
                                        GLOBAL const float *map, GLOBAL TALLY *tallies, int strip,
                                        int segment, struct outcome_record *outcome)
 {
-    const struct sample_trace trace = {
-        fan, pieces, chains, objects, spheres, key_of_strip(fan, strip), strip};
+    struct sample_trace trace = {fan,   pieces, chains, objects, spheres, key_of_strip(fan, strip),
+                                 strip, {0}};
     GLOBAL const struct target_record *targets = targets_of(chains, spheres) + fan->target;
     struct waiting_samples followed, facing;
+    draw_shifts(&trace);
     followed.count = facing.count = 0;
     int is_over = 0;
     for (RECORD_WORD first = first_ray_of_item(segment); !is_over; first += ray_step(fan)) {
@@ -231,9 +263,7 @@ NOINLINE void trace_second_order_strip(const struct fan_record *fan,
             for (int lane = 0; lane < WIDTH; lane++)
                 numbers[lane] = (int)first + lane;
             add_waiting(numbers,
-                        aim_samples(fan, chains, targets, strip, trace.key,
-                                    SPLAT_WORD(first) + LANE_NUMBERS)
-                            .is_followed,
+                        aim_samples(&trace, targets, SPLAT_WORD(first) + LANE_NUMBERS).is_followed,
                         &followed);
         }
         const int least = is_over ? 1 : WIDTH; /* the last samples may be fewer */

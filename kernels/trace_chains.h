@@ -150,8 +150,9 @@ FUNCTION void begin_fan_chain(const struct fan_record *fan,
                               const struct target_choice *choice, struct chain *chain)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    vfloat along, across, dither;
-    three_uniforms(key, number, 0, &along, &across, &dither);
+    const vfloat along = lattice_uniform(number, LATTICE_OF_2_1, key.first);
+    vfloat across, dither;
+    two_uniforms(key, number, 0, &across, &dither);
     begin_chain(fan, pieces, objects,
                 strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                 fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step,

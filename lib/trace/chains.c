@@ -95,9 +95,10 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
 #define PATCH_RAYS_PER_BIN  1.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
 /* Rays of an object's fan in a bin. Objects are small, and their specular sound and their sound to
- * the sea surface spread far. Other rough parts matter only between objects. */
+ * the sea surface spread far. Samples stand for the rough parts' paths to the seabed. */
 #define OBJECT_RAYS_PER_BIN 32.0
-#define ROUGH_RAYS_PER_BIN  2.0 /* samples stand for the paths to the seabed */
+#define PEAKED_RAYS_PER_BIN 16.0 /* with samples for the rest */
+#define ROUGH_RAYS_PER_BIN  2.0  /* matter between objects */
 
 /* The seabed that may exchange sound with some object. */
 struct surroundings {
@@ -146,8 +147,9 @@ double chain_rays_per_bin(const struct tracer *tracer, const struct line_grid *g
 {
     const sonject_material_params *material = &tracer->placements[part].material;
     const bool is_peaked = material_is_smooth(material) || material->glossy_albedo > 0.0;
-    return is_peaked || !second_order_is_sampled(tracer, grid) ? OBJECT_RAYS_PER_BIN
-                                                               : ROUGH_RAYS_PER_BIN;
+    if (!second_order_is_sampled(tracer, grid))
+        return OBJECT_RAYS_PER_BIN;
+    return is_peaked ? PEAKED_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
 }
 
 static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,

@@ -7,7 +7,7 @@
 #include "trace/image_sources.h"
 
 #define PI              3.14159265358979323846
-#define SAMPLES_A_PIXEL 16.0
+#define SAMPLES_A_PIXEL 12.0
 /* The share of the seabed's echo in a cell below which a target has fewer samples. */
 #define FULL_SHARE 0.001
 #define MARGIN     1.001

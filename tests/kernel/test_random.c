@@ -43,6 +43,52 @@ TEST(test_uniforms_stay_inside)
     }
 }
 
+/* A lattice's error of the integral of the product of its coordinates, from 256 neighbours, over
+ * that of random numbers, sqrt((3^-d - 4^-d) / 256). *bias: the mean error in its standard errors.
+ */
+static double lattice_error(const uint32_t *multipliers, int dimensions, double *bias)
+{
+    const int points = 256, shifts = 1000;
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < shifts; i++) {
+        double mean = 0.0;
+        uint32_t first = (uint32_t)i, unused = 0, shift[6];
+        threefry(5, 0, &first, &unused);
+        for (uint32_t j = 0; j < 6; j++) {
+            shift[j] = (uint32_t)i;
+            unused = j + 1;
+            threefry(5, 0, &shift[j], &unused);
+        }
+        for (uint32_t n = 0; n < (uint32_t)points; n++) {
+            double product = 1.0;
+            for (int j = 0; j < dimensions; j++)
+                product *= (double)lattice_uniform(first + n, multipliers[j], shift[j]);
+            mean += product / points;
+        }
+        const double error = mean - pow(0.5, dimensions);
+        sum += error;
+        squares += error * error;
+    }
+    *bias = sum / sqrt(squares);
+    return sqrt(squares / shifts / ((pow(3.0, -dimensions) - pow(4.0, -dimensions)) / points));
+}
+
+TEST(lattices_integrate_better_than_random_numbers)
+{
+    static const uint32_t two[] = {LATTICE_OF_2_0, LATTICE_OF_2_1};
+    static const uint32_t six[] = {LATTICE_OF_6_0, LATTICE_OF_6_1, LATTICE_OF_6_2,
+                                   LATTICE_OF_6_3, LATTICE_OF_6_4, LATTICE_OF_6_5};
+    double bias;
+    assert_true(lattice_error(two, 2, &bias) < 0.3);
+    assert_true(fabs(bias) < 4.0);
+    for (int i = 0; i < 6; i++) { /* by itself, and with the next */
+        assert_true(lattice_error(&six[i], 1, &bias) < 0.35);
+        assert_true(i == 5 || lattice_error(&six[i], 2, &bias) < 0.45);
+    }
+    assert_true(lattice_error(six, 6, &bias) < 0.8);
+    assert_true(fabs(bias) < 4.0);
+}
+
 /* Returns chi-square of counts in equal classes as a normal deviate (classes are many). */
 static double chi_square(const uint32_t *counts, int classes, double draws)
 {

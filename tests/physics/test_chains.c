@@ -273,7 +273,7 @@ struct lit {
     struct ranges ranges;           /* counted from the sphere's centre */
     int steps;                      /* of the integral, in each direction */
 };
-static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 1000};
+static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 3001};
 
 /* Adds one bundle of rays, of the wavefront dx by r dphi at the sphere. The sphere mirrors its
  * energy, over the square of the range, to the seabed, which sends mu cos(angle) / r^2 of it to the
@@ -353,8 +353,8 @@ CLAIM(a_glint_lights_the_seabed)
 #define RADIUS_M    0.4
 #define RINGS       150 /* rings of seabed, ever wider */
 #define SECTORS     200
-#define PARALLEL    12 /* pieces of the sphere */
-#define MERIDIAN    24
+#define PARALLEL    24 /* pieces of the sphere */
+#define MERIDIAN    48
 #define REFERENCE_M 200.0 /* the reference's depth; its black seabed is not heard */
 
 static const struct ranges behind = {2, OVER_M, 0.5};
