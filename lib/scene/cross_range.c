@@ -88,7 +88,8 @@ struct complex_number cross_range_response(const struct point_response *response
 {
     struct complex_number w = {0.0, 0.0};
     if (response->cross_range_table)
-        return response_table_at(response->cross_range_table, distance_m);
+        return response_table_at(response->cross_range_table,
+                                 response->is_mirrored ? -distance_m : distance_m);
     if (response->array_length_m == 0.0) {
         w.real_part = along_track_response(response, distance_m);
         return w;
@@ -269,6 +270,7 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
                                            : "residual motion");
     if (table->count > 0) {
         response->cross_range_table = table;
+        response->is_mirrored = view->is_mirrored;
         response->cross_range_energy_m = response_table_energy(table, -HUGE_VAL, HUGE_VAL);
         response->strip_m = fmin(response->strip_m, response_table_width(table));
     }

@@ -49,6 +49,7 @@ struct point_response {
 
     const struct response_table *cross_range_table; /* a measured W; borrowed; NULL: none */
     double cross_range_energy_m;
+    bool is_mirrored; /* the table's positions are the image's, and the view's are reversed */
 
     double array_length_m;   /* length of a real aperture; 0: synthetic */
     double array_along[3];   /* the array's long side, in the view's axes */

@@ -388,13 +388,14 @@ objects:
     ("resolution: 15 cm, frequency: 100 kHz, motion: {yaw: {advance: 0.4 m, bias: 1.08 deg}}", 1.24),
     ("resolution: 15 cm, frequency: 100 kHz, motion: {sway: [{amplitude: 0.3 m, wavelength: 94.2 m}]}", None),
     ("resolution: 15 cm, frequency: 100 kHz, measured_response: response.csv", 1.0)])
-def test_objects_are_labelled_where_the_response_puts_their_echoes(sonject, tmp_path, sonar, moved_m):
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_objects_are_labelled_where_the_response_puts_their_echoes(sonject, tmp_path, sonar, moved_m, side):
     """The level counts there, and all pixels in which the echo outshines the seabed are the highlight."""
     along = numpy.arange(-40, 41) / 20
     (tmp_path / "response.csv").write_text("along_track_m,real\n" + "".join(
         f"{x:g},{numpy.exp(-((x - 1) / 0.2)**2):.6f}\n" for x in along))
     (tmp_path / "scene.yaml").write_text(MOVED.replace("SONAR", sonar))
-    sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
+    sonject.done("run", "scene.yaml", "-o", "out", "--quiet", "--set", f"input.geometry.side={side}")
     thing = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
     energy = images.read_tiff(tmp_path / "out" / "energy.tif").astype(float)
     over_seabed = energy / numpy.median(energy)
