@@ -243,7 +243,7 @@ sonject_status mesh_file_read(struct mesh_soup *soup)
         CHECK(file_read_whole(soup->report, soup->path, FILE_BYTES_MAX, &bytes, &count));
         const sonject_status status = formats[i].read(soup, bytes, count);
         free(bytes);
-        return status;
+        return status == SONJECT_OK ? mesh_soup_cut_polygons(soup) : status;
     }
     return report_failure(soup->report, SONJECT_ERROR_UNSUPPORTED,
                           "%s: meshes are read from STL, OBJ and PLY files; convert it to PLY",

@@ -11,15 +11,21 @@
 
 struct mesh;
 
+/* A face of more than three corners: its triangles, at first a fan about its first corner. */
+struct mesh_polygon {
+    size_t first, triangles;
+};
+
 /* Vertices, and triples of them that make triangles. A soup starts as zeros except for report and
  * path, and ends with mesh_soup_clear. */
 struct mesh_soup {
     struct report *report;
-    const char *path;  /* for messages */
-    double *positions; /* vertices x 3, in the file's unit and axes; owned */
-    uint32_t *corners; /* triangles x 3: numbers of vertices; owned */
-    size_t vertices, triangles;
-    size_t vertex_capacity, triangle_capacity;
+    const char *path;              /* for messages */
+    double *positions;             /* vertices x 3, in the file's unit and axes; owned */
+    uint32_t *corners;             /* triangles x 3: numbers of vertices; owned */
+    struct mesh_polygon *polygons; /* owned */
+    size_t vertices, triangles, polygon_count;
+    size_t vertex_capacity, triangle_capacity, polygon_capacity;
 };
 
 /* Adds one vertex, or triangle. Errors: INPUT (more than a mesh may have), MEMORY. */
@@ -27,9 +33,14 @@ sonject_status mesh_soup_add_vertex(struct mesh_soup *soup, const double positio
 sonject_status mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c);
 
 /* Adds corner number `place` (0, 1, ...) of a polygon. From the third on, it closes a triangle of a
- * fan from the first corner, right for convex polygons. fan: scratch of the polygon. */
+ * fan from the first corner. fan: scratch of the polygon. Errors: as mesh_soup_add_triangle. */
 sonject_status mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
                                             uint32_t fan[2]);
+
+/* Cuts polygons that are not convex into other triangles, of the same number, which lie inside
+ * them. All corners must be numbers of vertices. Errors: INPUT (a polygon that crosses itself, or
+ * has too many corners), MEMORY. */
+sonject_status mesh_soup_cut_polygons(struct mesh_soup *soup);
 void mesh_soup_clear(struct mesh_soup *soup);
 
 /* Makes a mesh of the triangles of a soup. Only the options of *mesh are set before. Errors: INPUT,

@@ -17,6 +17,7 @@ void mesh_soup_clear(struct mesh_soup *soup)
 {
     free(soup->positions);
     free(soup->corners);
+    free(soup->polygons);
     memset(soup, 0, sizeof *soup);
 }
 
@@ -50,14 +51,6 @@ sonject_status mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32
                               3 * sizeof *soup->corners),
                  soup->path);
     memcpy(&soup->corners[3 * soup->triangles++], triangle, sizeof triangle);
-    return SONJECT_OK;
-}
-
-sonject_status mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
-                                            uint32_t fan[2])
-{
-    CHECK(place >= 2 ? mesh_soup_add_triangle(soup, fan[0], fan[1], corner) : SONJECT_OK);
-    fan[place == 0 ? 0 : 1] = corner;
     return SONJECT_OK;
 }
 
