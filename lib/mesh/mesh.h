@@ -81,10 +81,9 @@ struct mesh_record mesh_record_of(const struct mesh *mesh, uint32_t first_branch
                                   uint32_t first_leaf, uint32_t first_normals);
 
 /* Finds the topology and orients the triangles by swapping second and third corners. Neighbours are
- * oriented alike. A piece with triangles to turn faces outward. A mesh whose pieces were all
- * consistent, but whose volume is negative, is turned as a whole. A cavity that its file orients
- * inward so stays one. vertices: triples of coordinates. corners: three a triangle, none equal.
- * Errors: MEMORY. */
+ * oriented alike. A piece with triangles to turn faces outward, and so does each closed piece that
+ * no other holds. What it holds turns with it, so a cavity stays one. vertices: triples of
+ * coordinates. corners: three a triangle, none equal. Errors: MEMORY. */
 sonject_status mesh_topology_find(struct report *report, const float *vertices, size_t vertex_count,
                                   uint32_t *corners, size_t triangle_count,
                                   struct mesh_topology *topology);

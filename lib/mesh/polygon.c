@@ -91,7 +91,8 @@ static double area_of(const double a[2], const double b[2], const double c[2])
 }
 
 /* Returns whether a corner may be cut off: its triangle lies inside the outline and holds no other
- * corner. The last triangle may be flat. Corners at the same place, where an outline touches itself, do not count. */
+ * corner. The last triangle may be flat. Corners at the same place, where an outline touches
+ * itself, do not count. */
 static bool is_ear(const struct outline *outline, size_t before, size_t at, size_t after)
 {
     double(*points)[2] = outline->points;
@@ -139,6 +140,7 @@ static sonject_status cut_polygon(struct mesh_soup *soup, const struct mesh_poly
     if (is_convex(soup, polygon, normal))
         return SONJECT_OK;
     const size_t corners = polygon->triangles + 2;
+    const unsigned long first = (unsigned long)soup->corners[3 * polygon->first];
     bool is_cut = corners <= CORNERS_MAX;
     if (is_cut) {
         outline.numbers = allocate_array(corners, sizeof *outline.numbers);
@@ -150,7 +152,6 @@ static sonject_status cut_polygon(struct mesh_soup *soup, const struct mesh_poly
         for (size_t i = 0; i < polygon->triangles && is_cut; i++)
             is_cut = clip_ear(&outline, &soup->corners[3 * (polygon->first + i)]);
     }
-    const unsigned long first = (unsigned long)soup->corners[3 * polygon->first];
     free(outline.numbers);
     free(outline.points);
     CHECK_MEMORY(soup->report, has_memory, soup->path);

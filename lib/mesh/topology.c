@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "mesh/mesh.h"
+#include "mesh/nesting.h"
 
 #define FACETS_MAX 256
 #define NO_PARTNER UINT32_MAX
@@ -309,28 +310,45 @@ static double orient_piece(struct walk *walk, size_t count, size_t turned,
     return turn_others ? -volume : volume;
 }
 
-static void orient(struct walk *walk, size_t triangle_count, struct mesh_topology *topology)
+/* Turns the pieces of a closed mesh that face inward, and finds its volume. */
+static void face_outward(struct walk *walk, struct mesh_piece *pieces,
+                         struct mesh_topology *topology)
 {
-    double volume = 0.0;
-    for (size_t i = 0; i < triangle_count; i++) {
+    mesh_find_outsides(walk->vertices, walk->corners, pieces, topology->pieces);
+    for (size_t i = 0; i < topology->pieces; i++) {
+        const struct mesh_piece *piece = &pieces[i];
+        for (size_t k = 0; piece->must_turn && k < piece->count; k++)
+            reverse(walk->corners, piece->triangles[k]);
+        topology->turned += piece->must_turn ? piece->count : 0;
+        topology->volume += (piece->must_turn ? -piece->volume : piece->volume) / 6.0;
+    }
+}
+
+static bool orient(struct walk *walk, size_t triangle_count, struct mesh_topology *topology)
+{
+    const bool may_close = topology->open_edges + topology->crowded_edges == 0;
+    struct mesh_piece *pieces = NULL;
+    size_t capacity = 0;
+    bool has_memory = true;
+    for (size_t i = 0; i < triangle_count && has_memory; i++) {
         size_t turned;
         if (walk->visits[i] != UNSEEN)
             continue;
         const size_t count = follow_piece(walk, (uint32_t)i, &turned, topology);
-        volume += orient_piece(walk, count, turned, topology);
+        const double volume = orient_piece(walk, count, turned, topology);
+        has_memory = !may_close ||
+                     mesh_reserve((void **)&pieces, topology->pieces, &capacity, sizeof *pieces);
+        if (may_close && has_memory)
+            pieces[topology->pieces] =
+                (struct mesh_piece){walk->list, count, volume, {0.0f}, {0.0f}, false};
         topology->pieces++;
+        walk->list += count;
     }
-    topology->is_closed =
-        topology->open_edges == 0 && topology->crowded_edges == 0 && topology->twisted_edges == 0;
-    if (!topology->is_closed)
-        return;
-    if (volume < 0.0 && topology->turned == 0) {
-        for (size_t i = 0; i < triangle_count; i++)
-            reverse(walk->corners, i);
-        topology->turned = triangle_count;
-        volume = -volume;
-    }
-    topology->volume = volume / 6.0;
+    topology->is_closed = may_close && topology->twisted_edges == 0;
+    if (has_memory && topology->is_closed)
+        face_outward(walk, pieces, topology);
+    free(pieces);
+    return has_memory;
 }
 
 sonject_status mesh_topology_find(struct report *report, const float *vertices, size_t vertex_count,
@@ -339,16 +357,15 @@ sonject_status mesh_topology_find(struct report *report, const float *vertices, 
 {
     memset(topology, 0, sizeof *topology);
     uint32_t *partners = allocate_array(3 * triangle_count, sizeof *partners);
-    struct walk walk = {vertices, corners, partners, allocate_array(triangle_count, 1),
-                        allocate_array(triangle_count, sizeof *walk.list)};
+    uint32_t *list = allocate_array(triangle_count, sizeof *list);
+    struct walk walk = {vertices, corners, partners, allocate_array(triangle_count, 1), list};
     const bool has_memory =
-        partners && walk.visits && walk.list &&
-        find_partners(vertex_count, corners, 3 * triangle_count, topology, partners);
-    if (has_memory)
+        partners && walk.visits && list &&
+        find_partners(vertex_count, corners, 3 * triangle_count, topology, partners) &&
         orient(&walk, triangle_count, topology);
     free(partners);
     free(walk.visits);
-    free(walk.list);
+    free(list);
     CHECK_MEMORY(report, has_memory, "the edges of a mesh");
     return SONJECT_OK;
 }

@@ -109,28 +109,47 @@ TEST(narrow_seams_close_in_any_order_and_thin_walls_stay)
     sample_clear(&sample);
 }
 
-/* A small box inside a large one, oriented inward, is a cavity. */
-TEST(test_cavity)
+/* Two boxes face outward, however the file has them. A small box inside a large one that is
+ * oriented against it is a cavity, also in a file that is inside out. */
+static void expect_two_boxes(double aside, bool first_is_inward, bool second_is_inward,
+                             struct expected expected)
 {
     struct mesh_sample outer, inner;
     double positions[48];
     uint32_t corners[72];
     sample_box(&outer);
     sample_box(&inner);
-    for (size_t i = 0; i < 12; i++)
-        reverse(&inner, i);
+    for (size_t i = 0; i < 12; i++) {
+        if (first_is_inward)
+            reverse(&outer, i);
+        if (second_is_inward)
+            reverse(&inner, i);
+    }
     for (size_t i = 0; i < 24; i++) {
         positions[i] = outer.positions[i];
-        positions[24 + i] = 0.5 * inner.positions[i];
+        positions[24 + i] = 0.5 * inner.positions[i] + aside;
     }
     for (size_t i = 0; i < 36; i++) {
         corners[i] = outer.corners[i];
         corners[36 + i] = 8 + inner.corners[i];
     }
     const struct mesh_sample both = {positions, corners, 16, 24};
-    expect_topology(&both, (struct expected){.pieces = 2, .vertices = 16, .volume = 1.44 * 0.875});
+    expected.pieces = 2;
+    expected.vertices = 16;
+    expect_topology(&both, expected);
     sample_clear(&outer);
     sample_clear(&inner);
+}
+
+TEST(pieces_face_outward_unless_another_holds_them)
+{
+    const double cavity = 1.44 * 0.875, two = 1.44 * 1.125;
+    expect_two_boxes(0.0, false, true, (struct expected){.volume = cavity});
+    expect_two_boxes(0.0, true, false, (struct expected){.turned = 24, .volume = cavity});
+    expect_two_boxes(5.0, false, false, (struct expected){.volume = two});
+    expect_two_boxes(5.0, false, true, (struct expected){.turned = 12, .volume = two});
+    expect_two_boxes(5.0, true, false, (struct expected){.turned = 12, .volume = two});
+    expect_two_boxes(5.0, true, true, (struct expected){.turned = 24, .volume = two});
 }
 
 TEST(test_open)
