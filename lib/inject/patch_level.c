@@ -334,14 +334,44 @@ static double gain_of(const sonject_object_params *object, double energy, double
     return 1.0;
 }
 
-/* Scales a pixel's echoes. Echoes by way of the seabed get the gain of the object that is heard
- * there, or whose shadow they fill, or else the objects' mean. */
-static void scale_pixel(struct echoes *echoes, const double *gains, double mean, size_t i)
+/* An object whose echoes are scaled. */
+struct scaled_object {
+    double gain;
+    double row, range_m; /* its place in the image; range_m: of its centre */
+    double size_m;
+};
+
+/* Returns the gain of echoes by way of the seabed, or of several objects: the mean of the objects'
+ * gains. An object weighs by the square of its area over that of the distance from the seabed that
+ * is heard in the pixel, so the nearest decides. Nothing is heard before the object itself. */
+static double gain_about(const struct scaled_object *objects, uint32_t count,
+                         const struct patch_view *view, size_t row, size_t column)
+{
+    const double range = view_processor_range(view, (double)column);
+    double sum = 0.0, scaled = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct scaled_object *object = &objects[i];
+        const double aside = 2.0 * ((double)row - object->row) * view->row_spacing_m;
+        const double detour = range - object->range_m;
+        const double area = 0.25 * object->size_m * object->size_m;
+        const double share = area / (aside * aside + detour * detour + area);
+        const bool is_before = detour < -object->size_m - view->column_spacing_m;
+        const double weight = is_before ? 1e-6 * share * share : share * share;
+        sum += weight;
+        scaled += weight * object->gain;
+    }
+    return sum > 0.0 ? scaled / sum : 1.0;
+}
+
+#define NO_INDIRECT 1e-5 /* share of a pixel's echoes that rounding may leave over */
+
+/* Scales a pixel's echoes: those of first hits by their objects' gains, the others by those about.
+ */
+static void scale_pixel(struct echoes *echoes, const struct patch_view *view, const double *gains,
+                        const struct scaled_object *objects, uint32_t count, size_t i)
 {
     double energy = 0.0; /* first hits alone; `scaled`: with the gains */
     double scaled = 0.0;
-    double hidden = 0.0;
-    double scaled_hidden = 0.0;
     const size_t row = i / echoes->columns;
     const size_t column = i % echoes->columns;
     for (uint32_t number = 0; number < echoes->object_count; number++) {
@@ -352,14 +382,15 @@ static void scale_pixel(struct echoes *echoes, const double *gains, double mean,
         const size_t at = row * echo->columns + column - echo->first_column;
         energy += (double)echo->energy[at];
         scaled += gains[number] * (double)echo->energy[at];
-        hidden += (double)echo->lost[at];
-        scaled_hidden += gains[number] * (double)echo->lost[at];
     }
-    const double gain = energy > 0.0   ? scaled / energy
-                        : hidden > 0.0 ? scaled_hidden / hidden
-                                       : mean;
+    const double before = (double)echoes->target_energy[i];
+    const bool is_direct = before - energy <= NO_INDIRECT * before;
+    const double about = is_direct ? 1.0 : gain_about(objects, count, view, row, column);
+    const double gain = !is_direct     ? (scaled + about * (before - energy)) / before
+                        : energy > 0.0 ? scaled / energy
+                                       : 1.0;
     const float amplitude = (float)sqrt(gain);
-    echoes->energy[i] += (float)((gain - 1.0) * (double)echoes->target_energy[i]);
+    echoes->energy[i] += (float)((gain - 1.0) * before);
     echoes->target_energy[i] *= (float)gain;
     echoes->target_real[i] *= amplitude;
     echoes->target_imaginary[i] *= amplitude;
@@ -369,55 +400,69 @@ static void scale_pixel(struct echoes *echoes, const double *gains, double mean,
     }
     for (uint32_t order = 0; order < echoes->orders; order++) {
         float *kept = &echoes->order_energy[order][i];
-        *kept = order == 0 ? *kept + (float)(scaled - energy) : *kept * (float)gain;
+        *kept = order == 0 ? *kept + (float)(scaled - energy) : *kept * (float)about;
+    }
+}
+
+/* Sets an object's place and gain, and its level in the truth. */
+static void set_level(const struct tracer *tracer, const struct object_echo *echo, uint32_t number,
+                      struct scaled_object *scaled, sonject_object_truth *truth)
+{
+    const sonject_object_params *object = &tracer->scene->objects[number];
+    const struct placed_object *placed = &tracer->objects[number];
+    const double lambert = tracer->view.seabed_lambert;
+    scaled->row = view_row_of_x(&tracer->view, placed->origin[0]);
+    scaled->range_m = ray_path_range(&tracer->view.water, placed->origin[1], placed->origin[2]) *
+                      tracer->view.range_ratio;
+    scaled->size_m = placed->size_m;
+    /* Compare with the seabed that the echo's peak lies on. */
+    const double range = echo->peak_energy > 0.0 ? echo->peak_range_m : scaled->range_m;
+    const double over_seabed =
+        echo->peak_energy > 0.0
+            ? echo->peak_energy /
+                  seabed_cell_energy(&tracer->view, &tracer->response, lambert, range)
+            : 0.0;
+    const double sine = sin(view_grazing(&tracer->view, range));
+    scaled->gain = gain_of(object, echo->peak_energy, over_seabed);
+    truth->level_kind = object->level_kind;
+    truth->level_gain_db = decibels(scaled->gain);
+    truth->over_seabed_db = decibels(scaled->gain * over_seabed);
+    truth->seabed_strength_db = decibels(lambert * sine * sine);
+}
+
+static void scale_echoes(const struct tracer *tracer, struct echoes *echoes, const double *gains,
+                         const struct scaled_object *scaled, uint32_t count)
+{
+    for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
+        scale_pixel(echoes, &tracer->view, gains, scaled, count, i);
+    for (uint32_t i = 0; i < echoes->object_count; i++) {
+        struct object_echo *echo = &echoes->objects[i];
+        echo->peak_energy *= gains[i];
+        for (size_t k = 0; echo->energy && k < echoes->rows * echo->columns; k++)
+            echo->energy[k] *= (float)gains[i];
     }
 }
 
 sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
                                  struct injected_window *result)
 {
-    const struct scene *scene = tracer->scene;
     double *gains = allocate_array(echoes->object_count, sizeof *gains);
-    double mean = 0.0;
-    double followed = 0.0;
+    struct scaled_object *scaled = allocate_array(echoes->object_count, sizeof *scaled);
+    const bool has_memory = gains && scaled;
+    uint32_t count = 0;
     bool is_scaled = false;
-    const double lambert = tracer->view.seabed_lambert;
-    CHECK_MEMORY(tracer->report, gains, "the objects' levels");
-    for (uint32_t i = 0; i < echoes->object_count; i++) {
-        const struct object_echo *echo = &echoes->objects[i];
+    for (uint32_t i = 0; has_memory && i < echoes->object_count; i++) {
         gains[i] = 1.0;
         if (!tracer_follows(tracer, i))
             continue;
-        /* Compare with the seabed that the echo's peak lies on. */
-        const double over_seabed =
-            echo->peak_energy > 0.0
-                ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response, lambert,
-                                                         echo->peak_range_m)
-                : 0.0;
-        const double *origin = tracer->objects[i].origin;
-        const double range = echo->peak_energy > 0.0
-                                 ? echo->peak_range_m
-                                 : ray_path_range(&tracer->view.water, origin[1], origin[2]) *
-                                       tracer->view.range_ratio;
-        const double grazing = view_grazing(&tracer->view, range);
-        sonject_object_truth *truth = &result->objects[i];
-        gains[i] = gain_of(&scene->objects[i], echo->peak_energy, over_seabed);
-        mean += gains[i];
-        followed += 1.0;
-        is_scaled = is_scaled || scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL;
-        truth->level_kind = scene->objects[i].level_kind;
-        truth->level_gain_db = decibels(gains[i]);
-        truth->over_seabed_db = decibels(gains[i] * over_seabed);
-        truth->seabed_strength_db = decibels(lambert * sin(grazing) * sin(grazing));
+        set_level(tracer, &echoes->objects[i], i, &scaled[count], &result->objects[i]);
+        gains[i] = scaled[count++].gain;
+        is_scaled |= tracer->scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL;
     }
-    for (size_t i = 0; is_scaled && i < echoes->rows * echoes->columns; i++)
-        scale_pixel(echoes, gains, mean / followed, i);
-    for (uint32_t i = 0; is_scaled && i < echoes->object_count; i++) {
-        struct object_echo *echo = &echoes->objects[i];
-        echo->peak_energy *= gains[i];
-        for (size_t k = 0; echo->energy && k < echoes->rows * echo->columns; k++)
-            echo->energy[k] *= (float)gains[i];
-    }
+    if (has_memory && is_scaled)
+        scale_echoes(tracer, echoes, gains, scaled, count);
     free(gains);
+    free(scaled);
+    CHECK_MEMORY(tracer->report, has_memory, "the objects' levels");
     return SONJECT_OK;
 }

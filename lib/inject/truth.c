@@ -136,16 +136,17 @@ static void find_visible_shadow(const struct patch_level *level, const struct ec
         truth->shadow_pixels > 0 ? (double)pixels / (double)truth->shadow_pixels : NAN;
 }
 
-static double transmission_loss(const struct tracer *tracer, const double origin[3], double grazing)
+static double transmission_loss(const struct tracer *tracer, const double point[3], double grazing)
 {
-    const struct arrival ray = ray_path_arrival(&tracer->view.water, grazing, origin[2]);
+    const struct arrival ray = ray_path_arrival(&tracer->view.water, grazing, point[2]);
     return 10.0 * log10(ray.ground_range_m * ray.wavefront_m / ray.spreading) +
            tracer->scene->medium.absorption_db_per_m * ray.length_m;
 }
 
-/* Returns the size from one side of an object to the other. */
+/* Returns the size from one side of an object to the other. Moves the centre, in which one part has
+ * its own centre, to the middle between both sides of several. */
 static double overall_size(const struct tracer *tracer, const struct placed_object *object,
-                           const double direction[3])
+                           const double direction[3], double centre[3])
 {
     const double back[3] = {-direction[0], -direction[1], -direction[2]};
     double low = INFINITY;
@@ -154,34 +155,36 @@ static double overall_size(const struct tracer *tracer, const struct placed_obje
         const struct placement *part = &tracer->placements[object->first_part + i];
         double at = 0.0;
         for (int axis = 0; axis < 3; axis++)
-            at += (part->centre[axis] - object->origin[axis]) * direction[axis];
+            at += (part->centre[axis] - centre[axis]) * direction[axis];
         high = fmax(high, at + placement_extent(part, direction));
         low = fmin(low, at - placement_extent(part, back));
     }
+    for (int axis = 0; axis < 3 && object->part_count > 1; axis++)
+        centre[axis] += 0.5 * (low + high) * direction[axis];
     return high > low ? high - low : 0.0;
 }
 
 static void locate(const struct tracer *tracer, uint32_t number, sonject_object_truth *truth)
 {
     const struct placed_object *object = &tracer->objects[number];
-    const double *origin = object->origin;
     const struct patch_view *view = &tracer->view;
-    double axes[3][3];
+    double axes[3][3], centre[3];
+    memcpy(centre, tracer->placements[object->first_part].centre, sizeof centre);
     object_axes(axes, &tracer->scene->objects[number], view->is_mirrored);
     truth->struct_size = sizeof *truth;
-    truth->overall_length_m = overall_size(tracer, object, axes[0]);
-    truth->overall_width_m = overall_size(tracer, object, axes[1]);
-    truth->overall_height_m = overall_size(tracer, object, axes[2]);
-    truth->along_track_m = origin[0];
-    truth->ground_range_m = origin[1];
-    truth->height_m = origin[2];
+    truth->overall_length_m = overall_size(tracer, object, axes[0], centre);
+    truth->overall_width_m = overall_size(tracer, object, axes[1], centre);
+    truth->overall_height_m = overall_size(tracer, object, axes[2], centre);
+    truth->along_track_m = centre[0];
+    truth->ground_range_m = centre[1];
+    truth->height_m = centre[2];
     truth->burial_m = -(object->bottom_m - object->seabed_m);
-    truth->slant_range_m = ray_path_range(&view->water, origin[1], origin[2]) * view->range_ratio;
-    truth->row = view_row_of_x(view, origin[0]);
+    truth->slant_range_m = ray_path_range(&view->water, centre[1], centre[2]) * view->range_ratio;
+    truth->row = view_row_of_x(view, centre[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);
-    const double ray = ray_path_grazing(&view->water, origin[1], origin[2]);
-    truth->grazing_rad = ray_path_direction(&view->water, origin[1], origin[2]);
-    truth->transmission_loss_db = transmission_loss(tracer, origin, ray);
+    const double ray = ray_path_grazing(&view->water, centre[1], centre[2]);
+    truth->grazing_rad = ray_path_direction(&view->water, centre[1], centre[2]);
+    truth->transmission_loss_db = transmission_loss(tracer, centre, ray);
 }
 
 /* Returns the expected energy of a pixel with one object alone, over plain seabed: the echo, echoes

@@ -15,6 +15,9 @@ from sonject import _library
 from sonject._values import library_pixels
 
 
+SMALL = {"uniform": {"rows": 60, "columns": 90}, "geometry": GEOMETRY}
+
+
 @pytest.fixture(params=["float32", "complex64"])
 def patch(request, amplitude_patch, complex_patch):
     return amplitude_patch if request.param == "float32" else complex_patch
@@ -51,6 +54,39 @@ def test_the_sphere_shows_and_the_rest_keeps_its_bits(patch, make_scene):
     assert set(numpy.unique(result.labels)) == {0, 1}
     assert set(numpy.unique(result.highlight)) <= {0, 255}
     assert numpy.all((result.visibility >= 0) & (result.visibility <= 1))
+
+
+def test_the_centre_of_parts_is_that_of_the_body(make_scene):
+    """A box that a part puts elsewhere is where the same box is as a shape."""
+    box = {"shape": "box", "length": 0.6, "width": 0.4, "height": 0.3}
+    place = {"heading": "90 deg", "position": {"row": 20, "column": 30}}
+    apart = {"parts": [{**box, "at": {"along": 0.2, "up": 0.5}}], **place}
+    halves = {"parts": [{**box, "length": 0.3, "at": {"along": side, "up": 0.5}} for side in (0.05, 0.35)], **place}
+    alone = sonject.inject(None, make_scene(input=SMALL, objects=[{**box, **place}])).objects[0]
+    for parts in (apart, halves):
+        (truth,) = sonject.inject(None, make_scene(input=SMALL, objects=[parts])).objects
+        assert truth.height_m == pytest.approx(alone.height_m) == pytest.approx(0.15)
+        assert truth.along_track_m == pytest.approx(alone.along_track_m)
+        assert truth.ground_range_m == pytest.approx(alone.ground_range_m + 0.2)
+        assert truth.overall_length_m == pytest.approx(0.6)
+
+
+def test_another_object_leaves_an_echos_level_by_way_of_the_seabed(make_scene):
+    """A box with its level 12 dB down lies 3 m from a cylinder as it is. A seventh is the cylinder's gain."""
+    box = {"shape": "box", "length": 1.2, "width": 0.6, "height": 0.8, "heading": "15 deg",
+           "position": {"row": 40, "column": 60}, "level": {"over_seabed": "14 dB"}}
+    cylinder = {"shape": "cylinder", "length": 1, "diameter": 0.4, "heading": "20 deg", "position": {"row": 100, "column": 60}}
+    wide = {"uniform": {"rows": 140, "columns": 180},
+            "geometry": {"row_spacing": 0.05, "column_spacing": 0.05, "first_slant_range": 30}}
+    sonar = {"frequency": 100e3, "bandwidth": 15e3, "altitude": 10}
+
+    def second_order(*objects):
+        scene = make_scene(input=wide, sonar=sonar, objects=list(objects), injection={"interactions": 2, "order_energies": True})
+        return float(sonject.inject(None, scene).order_energies[1][10:70].sum())
+
+    beside, alone = second_order(cylinder, box), second_order(box)
+    print(beside / alone, second_order(cylinder) / alone)
+    assert beside == pytest.approx(alone, rel=0.3)
 
 
 def test_truth_and_statistics(patch, make_scene):
