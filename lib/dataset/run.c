@@ -123,6 +123,11 @@ static void tell_seen(struct report *report, const struct scene *scene,
                         "the highlight of '%s' does not stand out from the seabed: raise "
                         "objects[].level, or choose a darker place",
                         scene->objects[i].name);
+        if (truth->highlight_is_cut && truth->level_kind != SONJECT_LEVEL_PHYSICAL)
+            report_note(report,
+                        "the highlight of '%s' reaches the patch's edge: its level counts for the "
+                        "part in view; move it inward",
+                        scene->objects[i].name);
         if (is_cut && !is_drowned)
             report_note(
                 report,

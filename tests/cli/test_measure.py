@@ -180,13 +180,15 @@ def test_numbers_that_cannot_be_measured(sonject, tmp_path):
 @pytest.mark.parametrize("change, note", [
     ("{diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "'ball' cannot be seen: neither its highlight"),
     ("{diameter: 60 cm, level: {over_seabed: 0 dB}", "the highlight of 'ball' does not stand out from the seabed"),
-    ("{diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("{diameter: 30 cm", None)])
+    ("{diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("{diameter: 30 cm", None),
+    ("{diameter: 60 cm, level: {over_seabed: 30 dB}, position: {row: 64, column: 8}", "its level counts for the part in view")])
 def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
     (tmp_path / "scene.yaml").write_text(
         "sonject: 1\ninput: {synthetic: {rows: 128, columns: 128, seed: 3}, geometry: {row_spacing: 2.5 cm, "
         "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
         "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        f"objects: [{change}, name: ball, shape: sphere, position: {{row: 64, column: 64}}}}]\n")
+        f"objects: [{change}, name: ball, shape: sphere"
+        f"{'' if 'position' in change else ', position: {row: 64, column: 64}'}}}]\n")
     answer = sonject("run", "scene.yaml", "-o", "out")
     assert answer.returncode == 0, answer.stderr
     notes = [line for line in answer.stderr.splitlines() if "note: " in line]
