@@ -433,7 +433,10 @@ static const struct field injection_fields[] = {
      "search for paths to the source: connect each hit to it, or wait for rays to hit it by chance",
      WORD(estimator) = {[SONJECT_ESTIMATOR_CONNECT] = "connect",
                         [SONJECT_ESTIMATOR_BRUTE_FORCE] = "brute_force"}},
-    {"order_energies", "also keep the energy of each number of interactions", FLAG(order_energies)},
+    {"order_energies",
+     "also keep the energy of each number of interactions; reflections at "
+     "boundaries and between smooth faces do not count",
+     FLAG(order_energies)},
     {"match", "properties that targets take from a measured magnitude image", SAME(match_section)},
 };
 const struct section injection_section = {ROWS(injection_fields), .relations = relate_injection,

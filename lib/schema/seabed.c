@@ -37,7 +37,8 @@ static const struct field ripples_fields[] = {
      QUANTITY(sharpness, NUMBER), WITHIN(0.0, 1.0)},
     {"irregularity", "irregularity of the crests: 0 is straight, at 1 they wander, fork and end",
      QUANTITY(irregularity, NUMBER), WITHIN(0.0, 1.0)},
-    {"seed", "seed of the ripples' irregularity", COUNT64(seed, 0, 0)},
+    {"seed", "seed of the ripples' irregularity, which begins at the patch's corner",
+     COUNT64(seed, 0, 0)},
 };
 static const struct section ripples_section = {ROWS(ripples_fields)};
 
