@@ -117,12 +117,12 @@ void mesh_find_outsides(const float *vertices, const uint32_t *corners, struct m
     for (size_t i = 0; i < count; i++)
         find_bounds(&nest, &pieces[i]);
     find_holders(&nest);
-    for (size_t i = 0; i < count; i++) {
-        const struct mesh_piece *piece = &pieces[i];
-        if (piece->volume >= 0.0 || is_held(&nest, piece))
-            continue;
-        for (size_t k = 0; k < count; k++)
-            if (k == i || holds(&nest, piece, &pieces[k]))
+    for (size_t i = 0; i < count; i++)
+        pieces[i].must_turn = pieces[i].volume < 0.0 && !is_held(&nest, &pieces[i]);
+    for (size_t i = 0; i < nest.holder_count; i++) {
+        const struct mesh_piece *holder = &pieces[nest.holders[i]];
+        for (size_t k = 0; k < count && holder->volume < 0.0 && holder->must_turn; k++)
+            if (k != nest.holders[i] && holds(&nest, holder, &pieces[k]))
                 pieces[k].must_turn = true;
     }
 }
