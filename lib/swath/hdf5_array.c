@@ -23,8 +23,9 @@
 /* A data set and its type. */
 struct data_set {
     char name[NAME_BYTES];
-    hsize_t sides[2]; /* in the file's order */
-    bool is_read;     /* the numbers are of a type that sonject reads */
+    hsize_t sides[2];  /* in the file's order */
+    const char *fault; /* why sonject does not read it, for messages; NULL: it does */
+    bool may_be_image; /* see array_list_add */
     enum stored_type number;
     bool is_complex;
     bool is_column_major;  /* stored by MATLAB: sides are columns, rows */
@@ -85,27 +86,65 @@ static bool take_compound(hid_t type, struct data_set *set)
            numbers[0] >= STORED_FLOAT32;
 }
 
-/* Finds out what a data set is. Returns false unless it has two dimensions. */
-static bool look_at(hid_t group, const char *name, struct data_set *set)
+/* MATLAB marks its variables with their class. Logical ones and text are no images. */
+static bool is_of_words(hid_t dataset)
 {
+    char name[8] = "";
+    const hid_t attribute = H5Aopen(dataset, "MATLAB_class", H5P_DEFAULT);
+    const hid_t type = attribute < 0 ? -1 : H5Aget_type(attribute);
+    if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+        H5Tget_size(type) < sizeof name)
+        (void)H5Aread(attribute, type, name);
+    release(type);
+    release(attribute);
+    return strcmp(name, "logical") == 0 || strcmp(name, "char") == 0;
+}
+
+/* Finds out what sonject makes of a data set's numbers and sides. */
+static void take_facts(hid_t dataset, hid_t type, int dimensions, const hsize_t *sides,
+                       struct data_set *set)
+{
+    const H5T_class_t kind = H5Tget_class(type);
+    const bool is_of_numbers =
+        (kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_COMPOUND) && !is_of_words(dataset);
+    int wide = 0;
+    for (int i = 0; i < dimensions; i++)
+        wide += sides[i] > 1;
+    set->may_be_image = is_of_numbers && wide > 1;
+    set->is_column_major = H5Aexists(dataset, "MATLAB_class") > 0;
+    if (dimensions != 2)
+        set->fault = "has another number of dimensions than two: save it as one of rows and "
+                     "columns";
+    else if (!is_of_numbers ||
+             !(kind == H5T_COMPOUND ? take_compound(type, set) : number_of(type, &set->number)))
+        set->fault = "is of a type that sonject does not read: save it as float64, float32, uint8, "
+                     "uint16 or int16, complex ones as r and i, or real and imag, of float64 or "
+                     "float32";
+    memcpy(set->sides, sides, sizeof set->sides);
+}
+
+/* Finds out what a data set is. Returns false for sets without numbers. */
+static bool look_at(hid_t dataset, struct data_set *set)
+{
+    hsize_t sides[H5S_MAX_RANK] = {0};
     memset(set, 0, sizeof *set);
-    const hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
     const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
     const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
-    const bool is_plane =
-        space >= 0 && type >= 0 && H5Sget_simple_extent_type(space) == H5S_SIMPLE &&
-        H5Sget_simple_extent_ndims(space) == 2 &&
-        H5Sget_simple_extent_dims(space, set->sides, NULL) == 2 && set->sides[0] > 0 &&
-        set->sides[1] > 0 && set->sides[0] < (hsize_t)1 << 31 && set->sides[1] < (hsize_t)1 << 31;
-    if (is_plane) {
-        set->is_read = H5Tget_class(type) == H5T_COMPOUND ? take_compound(type, set)
-                                                          : number_of(type, &set->number);
-        set->is_column_major = H5Aexists(dataset, "MATLAB_class") > 0;
+    const int dimensions =
+        space < 0 || type < 0 ? -1 : H5Sget_simple_extent_dims(space, sides, NULL);
+    bool is_there = dimensions > 0;
+    for (int i = 0; i < dimensions; i++)
+        is_there = is_there && sides[i] > 0 && sides[i] < (hsize_t)1 << 31;
+    if (dimensions < 0) {
+        set->may_be_image = is_there = true;
+        set->fault = "cannot be opened: it is damaged, or made for a newer HDF5 than sonject's; "
+                     "write it again";
+    } else if (is_there) {
+        take_facts(dataset, type, dimensions, sides, set);
     }
     release(type);
     release(space);
-    release(dataset);
-    return is_plane;
+    return is_there;
 }
 
 /* A walk through all groups along hard links. */
@@ -127,17 +166,18 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *link, 
         end + strlen(name) + 2 > sizeof walk->path || walk->links++ >= LINKS_MAX)
         return 0;
     sprintf(walk->path + end, "%s%s", end > 0 ? "/" : "", name);
-    if (look_at(group, name, &set)) {
-        const uint64_t rows = set.sides[set.is_column_major];
-        const uint64_t columns = set.sides[!set.is_column_major];
+    const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    const H5I_type_t kind = object < 0 ? H5I_BADID : H5Iget_type(object);
+    if (kind == H5I_GROUP) {
+        H5Literate(object, H5_INDEX_NAME, H5_ITER_INC, NULL, visit_link, walk);
+    } else if (kind != H5I_DATATYPE && look_at(object, &set)) {
+        const uint64_t rows = set.fault ? 0 : set.sides[set.is_column_major];
         strcpy(set.name, walk->path);
-        if (array_list_add(&walk->list, set.name, rows, columns,
-                           set.is_read && rows > 1 && columns > 1))
+        if (array_list_add(&walk->list, set.name, rows, set.sides[!set.is_column_major],
+                           set.may_be_image))
             *walk->chosen = set;
-    } else {
-        H5Literate_by_name(group, name, H5_INDEX_NAME, H5_ITER_INC, NULL, visit_link, walk,
-                           H5P_DEFAULT);
     }
+    release(object);
     walk->path[end] = '\0';
     return 0;
 }
@@ -154,13 +194,9 @@ static sonject_status choose_set(struct report *report, struct hdf5_array *array
         walk.list.matches == 0)
         return input_failure(report, array->path, "is damaged: HDF5 cannot read it; copy it again");
     CHECK(array_list_check(report, array->path, &walk.list));
-    if (array->set.is_read)
-        return SONJECT_OK;
-    return input_failure(report, array->path,
-                         "the array %s is of a type that sonject does not read: save it as "
-                         "float64, float32, uint8, uint16 or int16, complex ones as r and i, or "
-                         "real and imag, of float64 or float32",
-                         array->set.name);
+    return array->set.fault ? input_failure(report, array->path, "the array %s %s", array->set.name,
+                                            array->set.fault)
+                            : SONJECT_OK;
 }
 
 static sonject_status check_filters(struct report *report, const char *path, hid_t creation)

@@ -20,6 +20,7 @@
 #define DEFLATE_RATIO   1040 /* more than the bytes that a deflated byte holds */
 #define NAME_MAX_BYTES  64   /* final 0 included */
 #define FLAG_COMPLEX    0x0800u
+#define FLAG_LOGICAL    0x0200u
 #define SUBSYSTEM_PLACE 116 /* in the header: offset of the data of MATLAB's own objects */
 
 /* Types of elements and stored numbers. The values are the format's. */
@@ -56,9 +57,11 @@ struct part {
 struct variable {
     uint64_t place, bytes; /* the element in the file, tag included */
     bool is_compressed, is_complex;
-    uint32_t kind; /* MATLAB's class */
-    uint64_t rows, columns;
-    size_t head; /* bytes of the element before its numbers; 0: not a two-dimensional array */
+    bool is_logical, is_plane; /* is_plane: two-dimensional */
+    uint32_t kind;             /* MATLAB's class */
+    uint64_t rows, columns;    /* of the first two dimensions */
+    uint32_t wide;             /* number of dimensions with more than one number */
+    size_t head;               /* bytes of the element before its numbers; 0: not an array */
     char name[NAME_MAX_BYTES];
 };
 
@@ -117,7 +120,7 @@ static uint32_t own_type(const struct variable *variable)
                                      [MAT_CLASS_UINT8] = MAT_UINT8,
                                      [MAT_CLASS_INT16] = MAT_INT16,
                                      [MAT_CLASS_UINT16] = MAT_UINT16};
-    if (variable->kind > MAT_CLASS_UINT16 ||
+    if (!variable->is_plane || variable->is_logical || variable->kind > MAT_CLASS_UINT16 ||
         (variable->is_complex && variable->kind > MAT_CLASS_SINGLE))
         return 0;
     return types[variable->kind];
@@ -158,7 +161,7 @@ static bool take_element(const unsigned char *bytes, size_t count, bool is_big_e
 }
 
 /* Reads class, sides and name from the beginning of an element. Returns false unless the element is
- * a two-dimensional array of numbers. */
+ * an array of numbers. */
 static bool read_head(const unsigned char *bytes, size_t count, bool is_big_endian,
                       struct variable *variable)
 {
@@ -171,14 +174,18 @@ static bool read_head(const unsigned char *bytes, size_t count, bool is_big_endi
     const uint64_t word = number_from_bytes(bytes + flags.data, 4, is_big_endian);
     variable->kind = (uint32_t)word & 0xFF;
     variable->is_complex = (word & FLAG_COMPLEX) != 0;
+    variable->is_logical = (word & FLAG_LOGICAL) != 0;
     if (variable->kind < MAT_CLASS_DOUBLE || variable->kind > MAT_CLASS_LAST_NUMERIC ||
         !take_element(bytes, count, is_big_endian, &place, &sides) || sides.type != MAT_INT32 ||
-        sides.bytes != 8 || !take_element(bytes, count, is_big_endian, &place, &name) ||
+        sides.bytes < 8 || !take_element(bytes, count, is_big_endian, &place, &name) ||
         name.type != MAT_INT8 || name.bytes >= sizeof variable->name)
         return false;
     variable->rows = number_from_bytes(bytes + sides.data, 4, is_big_endian);
     variable->columns = number_from_bytes(bytes + sides.data + 4, 4, is_big_endian);
+    for (size_t i = 0; i + 4 <= sides.bytes; i += 4)
+        variable->wide += number_from_bytes(bytes + sides.data + i, 4, is_big_endian) > 1;
     memcpy(variable->name, bytes + name.data, name.bytes);
+    variable->is_plane = sides.bytes == 8;
     variable->head = place;
     return variable->rows > 0 && variable->columns > 0 && variable->rows <= INT32_MAX &&
            variable->columns <= INT32_MAX;
@@ -223,9 +230,10 @@ static sonject_status choose_variable(struct report *report, struct swath_file *
         if ((type != MAT_COMPRESSED && type != MAT_MATRIX) || variable.bytes > file->bytes - place)
             return damaged(report, file, place);
         CHECK(look_at(report, file, &variable));
-        const bool is_image = own_type(&variable) != 0 && variable.rows > 1 && variable.columns > 1;
+        const bool is_read = own_type(&variable) != 0;
         if (variable.head > 0 &&
-            array_list_add(&list, variable.name, variable.rows, variable.columns, is_image))
+            array_list_add(&list, variable.name, is_read ? variable.rows : 0, variable.columns,
+                           variable.wide > 1 && !variable.is_logical))
             file->mat->variable = variable;
         place += variable.bytes;
     }
@@ -306,6 +314,11 @@ static sonject_status open_mat(struct report *report, struct swath_file *file, i
         return damaged(report, file, 126);
     CHECK(choose_variable(report, file, array));
     const struct variable *variable = &mat->variable;
+    if (!variable->is_plane)
+        return input_failure(report, file->path,
+                             "the array %s has more than two dimensions: save it as one of rows "
+                             "and columns",
+                             variable->name);
     if (own_type(variable) == 0)
         return input_failure(
             report, file->path,

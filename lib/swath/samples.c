@@ -173,16 +173,20 @@ sonject_status samples_exchange(struct report *report, const char *path,
 }
 
 bool array_list_add(struct array_list *list, const char *name, uint64_t rows, uint64_t columns,
-                    bool is_image)
+                    bool may_be_image)
 {
     char excerpt[80];
+    char size[48] = "cannot be read";
     const size_t length = strlen(list->text);
-    const bool is_wanted = list->wanted ? strcmp(list->wanted, name) == 0 : is_image;
-    if (is_image) {
+    const bool is_wanted = list->wanted ? strcmp(list->wanted, name) == 0 : may_be_image;
+    if (rows > 0)
+        snprintf(size, sizeof size, "%llu x %llu", (unsigned long long)rows,
+                 (unsigned long long)columns);
+    if (may_be_image) {
         if (length < sizeof list->text - 140)
-            snprintf(list->text + length, sizeof list->text - length, "%s%s (%llu x %llu)",
+            snprintf(list->text + length, sizeof list->text - length, "%s%s (%s)",
                      list->count > 0 ? ", " : "", text_excerpt(excerpt, sizeof excerpt, name),
-                     (unsigned long long)rows, (unsigned long long)columns);
+                     size);
         else if (list->text[length - 1] != '.')
             strcat(list->text, ", ...");
         list->count++;
@@ -206,6 +210,8 @@ sonject_status array_list_check(struct report *report, const char *path,
                              list->matches > 1 ? "holds more than one" : "holds no",
                              text_excerpt(excerpt, sizeof excerpt, list->wanted),
                              list->count > 0 ? "choose one of " : "nor another image", list->text);
-    return input_failure(report, path, "holds several arrays: say which is the image (array): %s",
-                         list->text);
+    return input_failure(
+        report, path,
+        "holds several arrays: choose one by its key array (input.array) or --array: %s",
+        list->text);
 }

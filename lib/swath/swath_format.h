@@ -53,16 +53,17 @@ void samples_convert(enum stored_type from_type, const unsigned char *from, enum
                      unsigned char *to, bool is_big_endian);
 
 struct array_list {
-    const char *wanted; /* a name; NULL: the only array */
+    const char *wanted; /* a name; NULL: the only array that may be an image */
     unsigned matches;   /* number of arrays that are wanted */
     unsigned count;
     char text[600]; /* the list of arrays for messages */
 };
 
-/* Notes an array; returns true if it is wanted. is_image: the array has several rows and columns of
- * numbers that sonject reads. Other arrays are wanted only by name, and not listed. */
+/* Notes an array; returns true if it is wanted. may_be_image: the array has numbers in several rows
+ * and columns, or cannot be opened, so that nobody knows. Other arrays are wanted only by name, and
+ * not listed. rows: 0 for an array that sonject does not read. */
 bool array_list_add(struct array_list *list, const char *name, uint64_t rows, uint64_t columns,
-                    bool is_image);
+                    bool may_be_image);
 
 /* Returns INPUT unless exactly one array is wanted. */
 sonject_status array_list_check(struct report *report, const char *path,

@@ -127,8 +127,8 @@ def test_matlab_5(sonject, tmp_path, swath, kind, compressed):
         "cube": numpy.arange(24.0).reshape(2, 3, 4),
     }
     scipy_io.savemat(tmp_path / "line.mat", variables, do_compression=compressed)
-    complex_key = "complex: true" if kind.startswith("c") else ""
-    sonject.done("run", write_scene(tmp_path, "line.mat", complex_key), "-o", "out")
+    keys = "array: swath\n" + ("  complex: true" if kind.startswith("c") else "")
+    sonject.done("run", write_scene(tmp_path, "line.mat", keys), "-o", "out")
     before, after = (scipy_io.loadmat(tmp_path / name) for name in ("line.mat", "out/image.mat"))
     assert_target_is_there(before.pop("swath"), after.pop("swath"))
     assert str(before) == str(after)
@@ -190,6 +190,59 @@ def test_one_of_several_arrays(sonject, tmp_path, swath):
     with h5py.File(tmp_path / "out/image.h5") as file:
         assert numpy.array_equal(file["port"][()], swath)
         assert_target_is_there(swath[::-1], file["sides/starboard"][()])
+
+
+@pytest.mark.parametrize("other", ["<i4", "f2", "cube", "damaged"])
+def test_an_array_that_cannot_be_read_is_one_of_several(sonject, tmp_path, swath, other):
+    """Else the target would go into the mask beside the swath."""
+    kind = other if other in ("<i4", "f2") else "f4"
+    with h5py.File(tmp_path / "line.h5", "w", libver="latest") as file:
+        file["swath"] = (swath[None] if other == "cube" else swath * 100).astype(kind)
+        place = h5py.h5o.get_info(file["swath"].id).addr
+    if other == "damaged":
+        whole = bytearray((tmp_path / "line.h5").read_bytes())
+        whole[place + 10] ^= 0x55
+        (tmp_path / "line.h5").write_bytes(whole)
+    reason = {"cube": "swath has another number of dimensions", "damaged": "swath cannot be opened"}
+    scene = write_scene(tmp_path, "line.h5")
+    for array in ([], ["--set", "input.array=swath"]):
+        assert_refused(sonject("run", scene, "-o", "out", *array), 3, reason.get(other, "swath is of a type"))
+    with h5py.File(tmp_path / "line.h5", "a") as file:
+        file["mask"] = (swath > numpy.median(swath)).astype("u1")
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "choose one by its key array (input.array)",
+                   "mask (96 x 128), swath (cannot be read)")
+    sonject.done("run", scene, "-o", "out", "--set", "input.array=mask")
+
+
+def test_of_matlab_5_arrays_none_is_taken_for_another(sonject, tmp_path, swath):
+    whole = (swath * 100).astype("i4")
+    mask = (swath * 100).astype("u1")
+    scene = write_scene(tmp_path, "line.mat")
+    scipy_io.savemat(tmp_path / "line.mat", {"swath": whole, "mask": mask})
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "swath (cannot be read), mask (96 x 128)")
+    scipy_io.savemat(tmp_path / "line.mat", {"swath": whole})
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "swath is of numbers that sonject does not read")
+    scipy_io.savemat(tmp_path / "line.mat", {"swath": whole.reshape(2, 48, 128)})
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "swath has more than two dimensions")
+
+
+@pytest.mark.parametrize("version", ["5", "7.3"])
+def test_a_logical_array_is_no_swath(sonject, tmp_path, swath, version):
+    scene = write_scene(tmp_path, "line.mat")
+    if version == "5":
+        scipy_io.savemat(tmp_path / "line.mat", {"mask": swath > numpy.median(swath)})
+    else:
+        with h5py.File(tmp_path / "line.mat", "w") as file:
+            file["mask"] = (swath > numpy.median(swath)).T.astype("u1")
+            file["mask"].attrs["MATLAB_class"] = numpy.bytes_("logical")
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "holds no two-dimensional array of numbers")
+    if version == "5":
+        scipy_io.savemat(tmp_path / "line.mat", {"mask": swath > numpy.median(swath), "swath": swath})
+    else:
+        with h5py.File(tmp_path / "line.mat", "a") as file:
+            file["swath"] = swath.T
+            file["swath"].attrs["MATLAB_class"] = numpy.bytes_("single")
+    sonject.done("run", scene, "-o", "out")
 
 
 def test_a_campaign_takes_each_swath_from_its_array(sonject, tmp_path, swath):
