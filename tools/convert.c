@@ -74,7 +74,8 @@ const struct verb convert_verb = {
         "known, but not IN's tags and further pages. With --into FILE it has FILE's format, which "
         "may\n"
         "also be XTF, JSF or MATLAB, and all else in FILE. Samples that a file cannot hold are\n"
-        "refused, never clipped; only in JSF files, numbers beyond 16 bits become the largest one.",
+        "refused, never clipped; only in recordings that scale each ping (JSF, some XTF), numbers\n"
+        "beyond a ping's samples become the largest one.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

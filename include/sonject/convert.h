@@ -39,9 +39,10 @@ typedef struct sonject_convert_params {
 /* Converts a file. Known geometry is written too, except to .npy, which has no place for it; a line
  * of the log says so. Channel and array select from `input`, and from `into` if it has several.
  * Doubles become floats. The output appears whole or not at all. Refused (INPUT): samples that the
- * file or its format cannot hold (numbers beyond a JSF file's 16 bits are cut instead), a range
- * axis for an input that does not state its own, and a call that would change nothing. Errors:
- * ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build lacks), CANCELLED. */
+ * file or its format cannot hold (numbers beyond the samples of a recording that scales each ping
+ * are cut instead), a range axis for an input that does not state its own, and a call that would
+ * change nothing. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build
+ * lacks), CANCELLED. */
 SONJECT_API sonject_status sonject_convert(sonject_context *context,
                                            const sonject_convert_params *params);
 

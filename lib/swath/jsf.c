@@ -2,18 +2,16 @@
  * 80 holds a ping of one channel of one subsystem. Numbers are little-endian, at the offsets of
  * EdgeTech's published description (0004824, rev. 1.20). Channels are numbered from 0 in the order
  * of subsystem and channel; subsystem 0 is a sub-bottom profiler. Samples have 16 bits: envelopes,
- * or pairs for analytic signals. A power of two scales each ping. If pings differ in it, samples
- * are shown as floats in steps of the finest ping. Ranges use the first ping's sound speed. Writing
- * clips numbers beyond 16 bits, and refuses what is not a number.
+ * or pairs for analytic signals. A power of two scales each ping (recording_set_scales). Ranges use
+ * the first ping's sound speed. Writing clips numbers beyond 16 bits, and refuses what is not a
+ * number.
  *
  * Refused: a file that is cut short or damaged, no sidescan channel, no channel as chosen or
  * several (the message lists them), other kinds of samples, compressed ones, pings in several
  * packets, pings with different cells. */
-#include <math.h>
 #include <stdio.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "swath/swath_format.h"
 
 #define MARK            0x1601
@@ -30,8 +28,6 @@
 #define UNITS_ARC       2 /* 1e-4 minutes of arc */
 #define UNITS_DM        3
 #define USUAL_SPEED     1500.0 /* m/s, if the file has none between 1300 and 1700 */
-#define WEIGHTS_MAX     64     /* largest difference between pings' weights */
-#define WHOLE_WEIGHTS   16     /* largest difference at which numbers fit 32 bits */
 
 /* A channel of a subsystem. Order: by subsystem, then by channel. */
 struct source {
@@ -212,32 +208,12 @@ static sonject_status add_ping(struct opening *opening, const struct message *me
 static sonject_status set_samples(const struct opening *opening)
 {
     struct swath_file *file = opening->file;
-    const struct recorded_ping *pings = file->recording.pings;
     const bool is_analytic = opening->kind == KIND_ANALYTIC;
-    int32_t least = pings[0].weight;
-    int32_t most = least;
-    for (uint64_t i = 1; i < file->layout.rows; i++) {
-        least = pings[i].weight < least ? pings[i].weight : least;
-        most = pings[i].weight > most ? pings[i].weight : most;
-    }
-    if (most - least > WEIGHTS_MAX)
-        return input_failure(opening->report, file->path,
-                             "weighs its pings from 2^%d to 2^%d, which no recorder does: cut the "
-                             "file",
-                             -most, -least);
     file->layout.channels = is_analytic ? 2 : 1;
-    file->layout.type = is_analytic || most > least ? PIXEL_FLOAT32 : PIXEL_UINT16;
+    file->layout.type = is_analytic ? PIXEL_FLOAT32 : PIXEL_UINT16;
     file->lines.type = is_analytic ? STORED_INT16 : STORED_UINT16;
     file->lines.clips = true;
-    if (most == least)
-        return SONJECT_OK;
-    if (!is_analytic && most - least <= WHOLE_WEIGHTS)
-        file->largest = (uint32_t)UINT16_MAX << (most - least);
-    file->lines.scales = allocate_array((size_t)file->layout.rows, sizeof *file->lines.scales);
-    CHECK_MEMORY(opening->report, file->lines.scales, "the pings");
-    for (uint64_t i = 0; i < file->layout.rows; i++)
-        file->lines.scales[i] = ldexp(1.0, most - pings[i].weight);
-    return SONJECT_OK;
+    return recording_set_scales(opening->report, file);
 }
 
 static sonject_status open_jsf(struct report *report, struct swath_file *file, int32_t channel,

@@ -10,7 +10,9 @@
 #include "base/file.h"
 #include "swath/swath_format.h"
 
-#define SAMPLES_MAX (UINT32_C(1) << 24)
+#define SAMPLES_MAX   (UINT32_C(1) << 24)
+#define WEIGHTS_MAX   64 /* largest difference between pings' weights */
+#define WHOLE_WEIGHTS 16 /* largest difference at which 16 bit numbers fit 32 bits */
 
 void channel_list_add(struct channel_list *list, uint32_t number, uint32_t side, const char *of)
 {
@@ -103,5 +105,34 @@ sonject_status recording_add(struct report *report, struct swath_file *file,
     file->lines.places[layout->rows++] = place;
     recording->rows = layout->rows;
     recording->columns = layout->columns = samples;
+    return SONJECT_OK;
+}
+
+sonject_status recording_set_scales(struct report *report, struct swath_file *file)
+{
+    const struct recorded_ping *pings = file->recording.pings;
+    const double full_scale = swath_file_full_scale(file);
+    int32_t least = pings[0].weight;
+    int32_t most = least;
+    for (uint64_t i = 1; i < file->layout.rows; i++) {
+        least = pings[i].weight < least ? pings[i].weight : least;
+        most = pings[i].weight > most ? pings[i].weight : most;
+    }
+    if (most == least)
+        return SONJECT_OK;
+    if (most - least > WEIGHTS_MAX)
+        return input_failure(report, file->path,
+                             "weighs its pings from 2^%d to 2^%d, which no recorder does: cut the "
+                             "file",
+                             -most, -least);
+    file->layout.type = PIXEL_FLOAT32;
+    file->lines.clips = true;
+    file->largest = file->layout.channels == 1 && most - least <= WHOLE_WEIGHTS
+                        ? (uint32_t)full_scale << (most - least)
+                        : 0;
+    file->lines.scales = allocate_array((size_t)file->layout.rows, sizeof *file->lines.scales);
+    CHECK_MEMORY(report, file->lines.scales, "the pings");
+    for (uint64_t i = 0; i < file->layout.rows; i++)
+        file->lines.scales[i] = ldexp(1.0, most - pings[i].weight);
     return SONJECT_OK;
 }

@@ -156,6 +156,11 @@ sonject_status channel_list_check(struct report *report, const char *path,
 sonject_status recording_add(struct report *report, struct swath_file *file,
                              const struct recorded_ping *ping, uint64_t place, uint64_t samples);
 
+/* Shows samples as they are if the pings' weights are all the same. Else shows them as floats in
+ * steps of the finest ping, and writing clips what is beyond a ping's samples. To be called when
+ * all pings are known, with the layout of samples as they are. Errors: INPUT, MEMORY. */
+sonject_status recording_set_scales(struct report *report, struct swath_file *file);
+
 /* Reads little-endian numbers of a recording: unsigned integers of 1 to 4 bytes; floats of 4 or 8
  * bytes, 0 if not finite. */
 uint32_t word_at(const unsigned char *bytes, size_t place, size_t size);

@@ -1,5 +1,6 @@
 /* Sidescan channels of XTF files (eXtended Triton Format, X41). Numbers are little-endian, at the
- * offsets of Triton's published format description. Refused: a file that is cut short or damaged,
+ * offsets of Triton's published format description. A power of two scales each ping's samples
+ * (recording_set_scales). Refused: a file that is cut short or damaged,
  * no sidescan channel, no channel as chosen or several (the message lists them), samples of other
  * sizes than 1 or 2 bytes, pings of the channel with different numbers of samples or slant ranges
  * (the message says where). */
@@ -135,6 +136,7 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     ping.slant_range_m = float_at(channel, 4);
     ping.delay_s = float_at(channel, 12);
     ping.duration_s = float_at(channel, 16);
+    ping.weight = (int16_t)word_at(channel, 58, 2);
     return recording_add(opening->report, file, &ping, place, samples);
 }
 
@@ -197,7 +199,8 @@ static sonject_status open_xtf(struct report *report, struct swath_file *file, i
     CHECK(read_header(&opening, &first_packet));
     CHECK(choose_channel(&opening, channel));
     CHECK(set_samples(&opening));
-    return read_packets(&opening, first_packet);
+    CHECK(read_packets(&opening, first_packet));
+    return recording_set_scales(report, file);
 }
 
 const struct swath_format xtf_format = {

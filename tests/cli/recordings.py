@@ -38,13 +38,14 @@ def file_header(kinds, sample_bytes=2, unipolar=1, units=0):
     return bytes(block)
 
 
-def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0):
+def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0, weight=0):
     """Returns one ping of an XTF file. lines: (number of the channel, samples as stored)."""
     body = b""
     for channel, samples in lines:
         head = bytearray(64)
         _put(head, 0, "HHfffff", channel, 2, slant_range, 0.0, 0.0, slant_range / 750.0, 0.1)
         _put(head, 42, "I", len(samples))
+        _put(head, 58, "h", weight)
         body += bytes(head) + samples.tobytes()
     body += b"\0" * (-(256 + len(body)) % 64)
     block = bytearray(256)
@@ -62,11 +63,12 @@ def note(text=b"a note of the operator"):
     return struct.pack("<HBBHHHI", 0xFACE, 1, 0, 0, 0, 0, 14 + len(body)) + body
 
 
-def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent=(), **options):
+def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent=(), weights=None, **options):
     """Returns an XTF file with a sub-bottom channel and notes between the pings. port, starboard: rows x
     columns of 16 bit samples, column 0 next to the track. Port is stored from far to near, as recorders
     do. row_spacing: a number, or each row's place along the track, m. empty: rows whose pings have neither
-    position nor altitude. altitudes: one for each row, m. silent: rows whose pings have no samples."""
+    position nor altitude. altitudes: one for each row, m. silent: rows whose pings have no samples. weights: one
+    for each row."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
     for row, (left, right) in enumerate(zip(port, starboard)):
         lines = [
@@ -78,6 +80,8 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, silent
             lines = [(channel, samples[:0]) for channel, samples in lines]
         if altitudes is not None:
             options["altitude"] = altitudes[row]
+        if weights is not None:
+            options["weight"] = int(weights[row])
         along = row_spacing[row] if numpy.ndim(row_spacing) else row_spacing * row
         place = (1000.0 + 0.6 * along, 2000.0 + 0.8 * along)
         if row in empty:

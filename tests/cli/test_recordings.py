@@ -143,6 +143,28 @@ def test_full_scale_is_where_the_recorder_clips(sonject, tmp_path, sides):
     assert after[10:50, 60:180].max() == max(4095, inside.max())
 
 
+def test_pings_are_weighed(sonject, tmp_path, sides):
+    """A ping of weight N has samples in units of 2^-N, as in JSF. Equal weights change nothing."""
+    weights = numpy.random.default_rng(5).integers(-2, 3, ROWS)
+    weights[:2] = -2, 2
+    scale = 2.0 ** (2 - weights)[:, None]
+    for name, told in (("line.xtf", weights), ("equal.xtf", numpy.full(ROWS, 3))):
+        (tmp_path / name).write_bytes(recordings.xtf_bytes(*sides, weights=told))
+        sonject.done("convert", name, "a.npy", "--channel", "port")
+        shown = numpy.load(tmp_path / "a.npy")
+        assert numpy.array_equal(shown, sides[0] * scale if told is weights else sides[0])
+        assert shown.dtype == ("f4" if told is weights else "u2")
+    other = (sides[0] * scale).astype("f4")
+    other[4, 5] = 1e9
+    other[5, 6] = 100.4 * scale[5, 0]
+    numpy.save(tmp_path / "b.npy", other)
+    sonject.done("convert", "b.npy", "back.xtf", "--into", "line.xtf", "--channel", "port")
+    expected = numpy.array(sides[0])
+    expected[4, 5], expected[5, 6] = 65535, 100
+    back = (tmp_path / "back.xtf").read_bytes()
+    assert numpy.array_equal(recordings_pixels(back, "port"), expected)
+    assert numpy.array_equal(recordings_pixels(back, "starboard"), sides[1])
+
 
 REFUSALS = {
     "no channel": (lambda data: data, "", "choose one by input.channel or --channel, 1 (port), 2 (starboard)"),
