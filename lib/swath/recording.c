@@ -60,21 +60,35 @@ sonject_status recording_damaged(struct report *report, const struct swath_file 
                          (unsigned long long)place, what);
 }
 
-/* Checks that a ping has the same range cells as the rows before. */
+double recorded_near_edge_m(const struct recorded_ping *ping)
+{
+    const double duration = (double)ping->duration_s;
+    const double delay = (double)ping->delay_s;
+    /* the far edge's range includes the delay */
+    const double share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
+    return (double)ping->slant_range_m * share;
+}
+
+/* Checks that a ping has the range cells of the first row, within one of them. */
 static sonject_status check_same(struct report *report, const struct swath_file *file,
                                  const struct recorded_ping *ping, uint64_t samples)
 {
     const struct raster_layout *layout = &file->layout;
-    const float range = layout->rows > 0 ? file->recording.pings[0].slant_range_m : 0.0f;
+    const struct recorded_ping *first = layout->rows > 0 ? file->recording.pings : ping;
+    const double near_edge = recorded_near_edge_m(first);
+    const double far_edge = (double)first->slant_range_m;
+    const double cell = (far_edge - near_edge) / (double)samples;
     if (layout->rows == 0 ||
-        (samples == layout->columns && fabsf(ping->slant_range_m - range) <= 1e-3f * range))
+        (samples == layout->columns && fabs(recorded_near_edge_m(ping) - near_edge) <= cell &&
+         fabs((double)ping->slant_range_m - far_edge) <= cell))
         return SONJECT_OK;
-    return input_failure(
-        report, file->path,
-        "ping %llu has %llu samples to %g m, the pings before it %llu to %g m: cut the file there",
-        (unsigned long long)(layout->rows + file->recording.empty.count),
-        (unsigned long long)samples, (double)ping->slant_range_m,
-        (unsigned long long)layout->columns, (double)range);
+    return input_failure(report, file->path,
+                         "ping %llu has %llu samples from %.6g to %.6g m, the first ping %llu from "
+                         "%.6g to %.6g m: cut the file there",
+                         (unsigned long long)(layout->rows + file->recording.empty.count),
+                         (unsigned long long)samples, recorded_near_edge_m(ping),
+                         (double)ping->slant_range_m, (unsigned long long)layout->columns,
+                         near_edge, far_edge);
 }
 
 sonject_status recording_add(struct report *report, struct swath_file *file,

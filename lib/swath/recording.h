@@ -45,6 +45,9 @@ struct recording {
     bool is_geographic;     /* positions are degrees of longitude and latitude, else m */
 };
 
+/* Returns the range of the first cell's near edge, m. */
+double recorded_near_edge_m(const struct recorded_ping *ping);
+
 /* The geometry of a channel's pixels. */
 struct recording_geometry {
     double row_spacing_m; /* mean; NaN if the file has no positions, 0 if the sonar stood still */

@@ -101,11 +101,7 @@ struct recording_geometry recording_geometry_of(const struct recording *file, ui
     struct recording_geometry geometry;
     geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
     read_altitudes(file, first_row, first_row + count, &geometry);
-    /* the far edge's range includes the delay */
-    const double duration = (double)first->duration_s;
-    const double delay = (double)first->delay_s;
-    const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
-    const double near_edge = (double)first->slant_range_m * delay_share;
+    const double near_edge = recorded_near_edge_m(first);
     geometry.column_spacing_m = ((double)first->slant_range_m - near_edge) / (double)file->columns;
     geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
     return geometry;

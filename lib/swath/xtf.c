@@ -2,7 +2,7 @@
  * offsets of Triton's published format description. A power of two scales each ping's samples
  * (recording_set_scales). Refused: a file that is cut short or damaged,
  * no sidescan channel, no channel as chosen or several (the message lists them), samples of other
- * sizes than 1 or 2 bytes, pings of the channel with different numbers of samples or slant ranges
+ * sizes than 1 or 2 bytes, pings of the channel with different numbers of samples or range cells
  * (the message says where). */
 #include "base/file.h"
 #include "swath/swath_format.h"

@@ -38,12 +38,12 @@ def file_header(kinds, sample_bytes=2, unipolar=1, units=0):
     return bytes(block)
 
 
-def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0, weight=0):
+def ping(lines, slant_range=30.0, altitude=6.0, position=(0.0, 0.0), number=0, weight=0, delay=0.0):
     """Returns one ping of an XTF file. lines: (number of the channel, samples as stored)."""
     body = b""
     for channel, samples in lines:
         head = bytearray(64)
-        _put(head, 0, "HHfffff", channel, 2, slant_range, 0.0, 0.0, slant_range / 750.0, 0.1)
+        _put(head, 0, "HHfffff", channel, 2, slant_range, 0.0, delay, slant_range / 750.0 - delay, 0.1)
         _put(head, 42, "I", len(samples))
         _put(head, 58, "h", weight)
         body += bytes(head) + samples.tobytes()

@@ -187,12 +187,22 @@ def test_damaged_recordings_are_refused(sonject, tmp_path, sides, case):
     assert not (tmp_path / "out").exists()
 
 
-def test_other_slant_ranges_within_a_file_are_refused(sonject, tmp_path, sides):
+@pytest.mark.parametrize("told, words", [
+    ({"slant_range": 50.0}, "ping 60 has 200 samples from 0 to 50 m, the first ping 200 from 0 to 30 m"),
+    ({"delay": 0.01}, "ping 60 has 200 samples from 7.5 to 30 m, the first ping 200 from 0 to 30 m"),
+    ({"slant_range": 30.16}, "ping 60 has 200 samples from 0 to 30.16 m"),
+    ({"slant_range": 30.14}, None),
+    ({"delay": 0.14 / 750}, None),
+])
+def test_range_cells_of_a_file_lie_within_one_cell(sonject, tmp_path, sides, told, words):
     data = recordings.xtf_bytes(*sides)
-    data += recordings.ping([(1, sides[0][0].astype("<u2"))], slant_range=50.0)
+    data += recordings.ping([(1, sides[0][0].astype("<u2"))], **told)
     (tmp_path / "line.xtf").write_bytes(data)
     answer = sonject("check", write_scene(tmp_path, "line.xtf", channel="port"))
-    assert_refused(answer, 3, "ping 60 has 200 samples to 50 m")
+    if words:
+        assert_refused(answer, 3, words)
+    else:
+        assert answer.returncode == 0, answer.stderr
 
 
 def test_signed_samples_below_zero_are_refused(sonject, tmp_path, sides):
