@@ -92,6 +92,18 @@ static sonject_status check_colours(struct report *report, const struct tiff_ima
     return SONJECT_OK;
 }
 
+static sonject_status check_shape(struct report *report, const struct tiff_image *image)
+{
+    uint32_t depth = 1;
+    uint32_t tile_depth = 1;
+    TIFFGetField(image->file, TIFFTAG_IMAGEDEPTH, &depth);
+    TIFFGetField(image->file, TIFFTAG_TILEDEPTH, &tile_depth);
+    if (depth > 1 || tile_depth > 1)
+        return input_failure(report, image->name,
+                             "is a volume of several slices: write the slice as its own image");
+    return SONJECT_OK;
+}
+
 static sonject_status check_coding(struct report *report, const struct tiff_image *image)
 {
     static const uint16_t known[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
@@ -229,6 +241,7 @@ static sonject_status check(struct report *report, struct tiff_image *image, uin
     look_at_blocks(image);
     CHECK(check_type(report, image));
     CHECK(check_colours(report, image));
+    CHECK(check_shape(report, image));
     CHECK(check_coding(report, image));
     uint64_t(*places)[2] = allocate_array(image->count, sizeof *places);
     CHECK_MEMORY(report, places, image->name);

@@ -160,6 +160,7 @@ struct tiff_build {
     /* for files to be refused; 0: as the layout says */
     uint16_t bits, sample_format, photometric, extra_channel, fill_order;
     uint32_t second_page_kind; /* 1: a smaller copy of the first */
+    uint32_t more_tag, more_value;
 };
 
 static inline void tiff_set_tags(TIFF *file, const struct tiff_build *build)
@@ -197,6 +198,8 @@ static inline void tiff_set_tags(TIFF *file, const struct tiff_build *build)
     } else {
         TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, build->block_rows);
     }
+    if (build->more_tag)
+        TIFFSetField(file, build->more_tag, build->more_value);
     TIFFSetField(file, TIFF_PRIVATE_TAG, TIFF_PRIVATE_TEXT);
 }
 

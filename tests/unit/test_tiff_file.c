@@ -154,17 +154,23 @@ CLEAN(tiff_that_is_not_for_sonject_is_refused)
         const char *part;
         uint16_t tag;
         uint32_t number;
-    } cases[] = {{{.bits = 1}, "1-bit", 0, 0},
-                 {{.bits = 4}, "4-bit", 0, 0},
-                 {{.sample_format = SAMPLEFORMAT_INT}, "signed", 0, 0},
-                 {{.sample_format = SAMPLEFORMAT_COMPLEXINT}, "complex", 0, 0},
-                 {{.photometric = 1 + PHOTOMETRIC_MINISWHITE}, "0 is white", 0, 0},
-                 {{.photometric = 1 + PHOTOMETRIC_PALETTE}, "palette", 0, 0},
-                 {{.fill_order = FILLORDER_LSB2MSB}, "how pixels are stored", 0, 0},
-                 {{.has_second_page = true, .second_page_kind = 1}, "smaller copies", 0, 0},
-                 {{.layout = complex32, .extra_channel = 2}, "transparency", 0, 0},
-                 {other_order, "compression (number 50000)", TIFFTAG_COMPRESSION, 50000},
-                 {other_order, "in the other byte order", TIFFTAG_PREDICTOR, 3}};
+    } cases[] = {
+        {{.bits = 1}, "1-bit", 0, 0},
+        {{.bits = 4}, "4-bit", 0, 0},
+        {{.sample_format = SAMPLEFORMAT_INT}, "signed", 0, 0},
+        {{.sample_format = SAMPLEFORMAT_COMPLEXINT}, "complex", 0, 0},
+        {{.photometric = 1 + PHOTOMETRIC_MINISWHITE}, "0 is white", 0, 0},
+        {{.photometric = 1 + PHOTOMETRIC_PALETTE}, "palette", 0, 0},
+        {{.fill_order = FILLORDER_LSB2MSB}, "how pixels are stored", 0, 0},
+        {{.has_second_page = true, .second_page_kind = 1}, "smaller copies", 0, 0},
+        {{.layout = complex32, .extra_channel = 2}, "transparency", 0, 0},
+        {{.more_tag = TIFFTAG_IMAGEDEPTH, .more_value = 2}, "a volume", 0, 0},
+        {{.is_tiled = true, .block_columns = 32, .more_tag = TIFFTAG_TILEDEPTH, .more_value = 2},
+         "a volume",
+         0,
+         0},
+        {other_order, "compression (number 50000)", TIFFTAG_COMPRESSION, 50000},
+        {other_order, "in the other byte order", TIFFTAG_PREDICTOR, 3}};
     const char *path = file_in("a.tif");
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct tiff_build build = cases[i].build;
