@@ -2,8 +2,12 @@
 
 #include <string.h>
 
+#include "base/byte_order.h"
 #include "base/file.h"
 #include "swath/swath_format.h"
+
+#define EXIF_ENTRY       12 /* bytes of a tag */
+#define EXIF_ORIENTATION 0x0112
 
 struct beginning {
     enum image_kind kind;
@@ -69,4 +73,31 @@ bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum imag
             return true;
         }
     return false;
+}
+
+sonject_status image_check_upright(struct report *report, const char *path, uint64_t orientation)
+{
+    if (orientation < 2 || orientation > 8)
+        return SONJECT_OK;
+    return input_failure(report, path,
+                         "is turned or mirrored by viewers, as its orientation tag (%u) says, and "
+                         "masks would not lie on it: write it upright, without the tag",
+                         (unsigned)orientation);
+}
+
+sonject_status image_check_exif(struct report *report, const char *path, const unsigned char *tiff,
+                                size_t count)
+{
+    if (count < 10)
+        return SONJECT_OK;
+    const bool is_big_endian = tiff[0] == 'M';
+    size_t place = (size_t)number_from_bytes(tiff + 4, 4, is_big_endian);
+    if (place > count - 2)
+        return SONJECT_OK;
+    uint64_t entries = number_from_bytes(tiff + place, 2, is_big_endian);
+    for (place += 2; entries > 0 && count - place >= EXIF_ENTRY; entries--, place += EXIF_ENTRY)
+        if (number_from_bytes(tiff + place, 2, is_big_endian) == EXIF_ORIENTATION)
+            return image_check_upright(report, path,
+                                       number_from_bytes(tiff + place + 8, 2, is_big_endian));
+    return SONJECT_OK;
 }

@@ -16,7 +16,9 @@
 
 #define QUALITY_DIFFERENCE 0.2 /* largest mean relative difference of close tables */
 
-#define COMMENT_MAX 65533 /* bytes of a comment, which holds the description */
+#define COMMENT_MAX 65533 /* bytes of a comment, which holds the description, or of EXIF data */
+#define EXIF_MARKER (JPEG_APP0 + 1)
+#define EXIF_HEAD   6 /* bytes before the data */
 
 /* The quality of whole swaths: coarser coding would show in all noise, not only at the target. */
 #define FINEST_QUALITY 98
@@ -93,6 +95,7 @@ static bool read_head(struct jpeg_image *image)
     jpeg_create_decompress(&image->jpeg);
     jpeg_stdio_src(&image->jpeg, image->listener.file);
     jpeg_save_markers(&image->jpeg, JPEG_COM, COMMENT_MAX);
+    jpeg_save_markers(&image->jpeg, EXIF_MARKER, COMMENT_MAX);
     jpeg_read_header(&image->jpeg, TRUE);
     if (image->jpeg.num_components == 1)
         jpeg_start_decompress(&image->jpeg);
@@ -173,10 +176,22 @@ static bool decode_region(struct jpeg_image *image, const struct region *region,
     return true;
 }
 
+static sonject_status check_exif(struct report *report, const struct jpeg_image *image)
+{
+    for (jpeg_saved_marker_ptr marker = image->jpeg.marker_list; marker; marker = marker->next)
+        if (marker->marker == EXIF_MARKER && marker->data_length > EXIF_HEAD &&
+            memcmp(marker->data, "Exif\0", EXIF_HEAD) == 0)
+            CHECK(image_check_exif(report, image->name, marker->data + EXIF_HEAD,
+                                   marker->data_length - EXIF_HEAD));
+    return SONJECT_OK;
+}
+
 static sonject_status take_description(struct report *report, const struct jpeg_image *image,
                                        char **description)
 {
-    const jpeg_saved_marker_ptr comment = image->jpeg.marker_list;
+    jpeg_saved_marker_ptr comment = image->jpeg.marker_list;
+    while (comment && comment->marker != JPEG_COM)
+        comment = comment->next;
     const size_t bytes = comment ? comment->data_length : 0;
     *description = allocate_array(bytes + 1, 1);
     CHECK_MEMORY(report, *description, image->name);
@@ -208,6 +223,7 @@ static sonject_status open_image(struct report *report, const char *name, const 
     image->path = path;
     CHECK(begin_decoding(report, image));
     CHECK(take_layout(report, image));
+    CHECK(check_exif(report, image));
     CHECK(take_description(report, image, &facts->description));
     facts->layout = image->layout;
     const struct region whole = {0, 0, image->layout.rows, image->layout.columns};

@@ -132,6 +132,15 @@ static sonject_status take_layout(struct report *report, struct png_image *image
     return SONJECT_OK;
 }
 
+static sonject_status check_exif(struct report *report, const struct png_image *image)
+{
+    png_uint_32 count = 0;
+    png_bytep exif = NULL;
+    return png_get_eXIf_1(image->png, image->info, &count, &exif) != 0
+               ? image_check_exif(report, image->name, exif, count)
+               : SONJECT_OK;
+}
+
 /* Decodes all passes of an interlaced image. */
 static bool decode_all(struct png_image *image, size_t row_bytes)
 {
@@ -224,6 +233,7 @@ static sonject_status png_open(struct report *report, const char *name, const ch
     image->path = path;
     CHECK(begin_decoding(report, image));
     CHECK(take_layout(report, image));
+    CHECK(check_exif(report, image));
     CHECK(try_all_rows(report, image));
     facts->layout = image->layout;
     return take_description(report, image, &facts->description);

@@ -96,12 +96,14 @@ static sonject_status check_shape(struct report *report, const struct tiff_image
 {
     uint32_t depth = 1;
     uint32_t tile_depth = 1;
+    uint16_t orientation = ORIENTATION_TOPLEFT;
     TIFFGetField(image->file, TIFFTAG_IMAGEDEPTH, &depth);
     TIFFGetField(image->file, TIFFTAG_TILEDEPTH, &tile_depth);
     if (depth > 1 || tile_depth > 1)
         return input_failure(report, image->name,
                              "is a volume of several slices: write the slice as its own image");
-    return SONJECT_OK;
+    TIFFGetField(image->file, TIFFTAG_ORIENTATION, &orientation);
+    return image_check_upright(report, image->name, orientation);
 }
 
 static sonject_status check_coding(struct report *report, const struct tiff_image *image)

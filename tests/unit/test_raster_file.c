@@ -276,6 +276,60 @@ CLEAN(png_and_jpeg_that_are_not_for_sonject_are_refused)
     expect_no_open(path, "cut short or damaged");
 }
 
+#define EXIF_BYTES 22
+
+/* Writes an image with EXIF data: after the mark of a JPEG, or after the first chunk of a PNG. */
+static void write_with_exif(const char *path, bool is_jpeg, const unsigned char *exif)
+{
+    static unsigned char bytes[1 << 16];
+    unsigned char *end = bytes + (is_jpeg ? 2 : 33);
+    size_t count;
+    EXPECT_OK(&report, write_image(path, &grey8, make_image(&grey8)));
+    const unsigned char *image = load(path, &count);
+    const size_t before = (size_t)(end - bytes);
+    assert_true(count + 100 < sizeof bytes);
+    memcpy(bytes, image, before);
+    memcpy(end,
+           is_jpeg ? "\xFF\xE1\0\x1E"
+                     "Exif\0\0"
+                   : "\0\0\0\x16"
+                     "eXIf",
+           is_jpeg ? 10 : 8);
+    end += is_jpeg ? 10 : 8;
+    memcpy(end, exif, EXIF_BYTES);
+    end += EXIF_BYTES;
+    if (!is_jpeg) {
+        number_to_bytes(crc32(0, end - EXIF_BYTES - 4, EXIF_BYTES + 4), end, 4, true);
+        end += 4;
+    }
+    memcpy(end, image + before, count - before);
+    write_bytes(path, bytes, (size_t)(end - bytes) + count - before);
+}
+
+/* Upright images are taken, and those whose EXIF data say nothing or point beyond their end. */
+CLEAN(images_that_viewers_turn_are_refused)
+{
+    static const struct {
+        unsigned char orientation, offset;
+        bool is_turned;
+    } cases[] = {{6, 8, true}, {3, 8, true}, {1, 8, false}, {9, 8, false}, {6, 21, false}};
+    for (size_t i = 0; i < 2 * COUNT(cases); i++) {
+        unsigned char exif[EXIF_BYTES + 1] = "MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\0\0";
+        const bool is_jpeg = i % 2 == 0;
+        const char *path = file_in(is_jpeg ? "a.jpg" : "a.png");
+        struct swath_file *file;
+        exif[7] = cases[i / 2].offset;
+        exif[19] = cases[i / 2].orientation;
+        write_with_exif(path, is_jpeg, exif);
+        if (cases[i / 2].is_turned) {
+            expect_no_open(path, "write it upright");
+        } else {
+            EXPECT_OK(&report, open_image(path, &file));
+            swath_file_close(&file);
+        }
+    }
+}
+
 CLEAN(absurd_sides_are_refused)
 {
     static const uint64_t sides[][2] = {{1u << 31, 1u << 31},

@@ -164,6 +164,7 @@ CLEAN(tiff_that_is_not_for_sonject_is_refused)
         {{.fill_order = FILLORDER_LSB2MSB}, "how pixels are stored", 0, 0},
         {{.has_second_page = true, .second_page_kind = 1}, "smaller copies", 0, 0},
         {{.layout = complex32, .extra_channel = 2}, "transparency", 0, 0},
+        {{.more_tag = TIFFTAG_ORIENTATION, .more_value = 3}, "write it upright", 0, 0},
         {{.more_tag = TIFFTAG_IMAGEDEPTH, .more_value = 2}, "a volume", 0, 0},
         {{.is_tiled = true, .block_columns = 32, .more_tag = TIFFTAG_TILEDEPTH, .more_value = 2},
          "a volume",
