@@ -1,4 +1,4 @@
-/* TIFF by libtiff: read, changed in place, and written. */
+/* TIFF by libtiff: read, and changed in place. */
 #include "swath/image_library.h"
 
 #include <errno.h>
@@ -9,9 +9,7 @@
 #include "base/file.h"
 #include "swath/tiff_stream.h"
 
-#define BLOCKS_MAX      ((uint32_t)1 << 25)
-#define NEW_STRIP_BYTES ((uint64_t)1 << 18)                 /* in a new image */
-#define CLASSIC_MAX     (UINT32_MAX - ((uint64_t)64 << 20)) /* less 64 MB for the directory */
+#define BLOCKS_MAX ((uint32_t)1 << 25)
 
 /* The block read last, kept because pieces of an image come one after the other. */
 struct kept_block {
@@ -217,19 +215,58 @@ static sonject_status check_places(struct report *report, const struct tiff_imag
     return SONJECT_OK;
 }
 
-/* Refuses smaller copies of the first page, which would not show the target. Other pages stay as
- * they are. Leaves the file at its first page. */
-static sonject_status check_other_pages(struct report *report, const struct tiff_image *image)
+/* Returns whether a block of the current page lies where the first page has one. places: the first
+ * page's, sorted. */
+static bool shares_blocks(const struct tiff_image *image, uint64_t (*places)[2])
+{
+    TIFF *file = image->file;
+    const uint32_t count = TIFFIsTiled(file) ? TIFFNumberOfTiles(file) : TIFFNumberOfStrips(file);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint64_t start = TIFFGetStrileOffset(file, i);
+        const uint64_t bytes = TIFFGetStrileByteCount(file, i);
+        uint32_t low = 0;
+        uint32_t high = bytes > 0 ? image->count : 0;
+        while (low < high) {
+            const uint32_t middle = low + (high - low) / 2;
+            if (places[middle][1] <= start)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        if (bytes > 0 && low < image->count &&
+            (places[low][0] <= start || places[low][0] - start < bytes))
+            return true;
+    }
+    return false;
+}
+
+static bool is_smaller_copy(const struct tiff_image *image)
+{
+    uint32_t kind = 0;
+    return TIFFGetField(image->file, TIFFTAG_SUBFILETYPE, &kind) &&
+           (kind & FILETYPE_REDUCEDIMAGE) != 0;
+}
+
+/* Refuses smaller copies of the first page, which would not show the target, a first page that is
+ * one, and pages that would change with the first. Other pages stay as they are. Leaves the file at
+ * its first page. */
+static sonject_status check_other_pages(struct report *report, const struct tiff_image *image,
+                                        uint64_t (*places)[2])
 {
     uint16_t count = 0;
-    const uint64_t *places = NULL;
-    uint32_t kind = 0;
-    bool has_copies = TIFFGetField(image->file, TIFFTAG_SUBIFD, &count, &places) && count > 0;
+    const uint64_t *offsets = NULL;
+    bool has_copies = TIFFGetField(image->file, TIFFTAG_SUBIFD, &count, &offsets) && count > 0;
+    if (is_smaller_copy(image))
+        return input_failure(report, image->name,
+                             "begins with a smaller copy of its image: write the image first");
     while (!has_copies && !TIFFLastDirectory(image->file)) {
         if (!TIFFReadDirectory(image->file))
             return damaged(report, image, "the list of its pages is broken or cut short");
-        has_copies = TIFFGetField(image->file, TIFFTAG_SUBFILETYPE, &kind) &&
-                     (kind & FILETYPE_REDUCEDIMAGE) != 0;
+        has_copies = is_smaller_copy(image);
+        if (!has_copies && shares_blocks(image, places))
+            return input_failure(report, image->name,
+                                 "keeps tiles or strips of several pages in the same place: write "
+                                 "it again, each on its own");
     }
     if (has_copies)
         return input_failure(report, image->name,
@@ -247,10 +284,10 @@ static sonject_status check(struct report *report, struct tiff_image *image, uin
     CHECK(check_coding(report, image));
     uint64_t(*places)[2] = allocate_array(image->count, sizeof *places);
     CHECK_MEMORY(report, places, image->name);
-    const sonject_status status = check_places(report, image, file_bytes, places);
+    sonject_status status = check_places(report, image, file_bytes, places);
+    THEN(status, check_other_pages(report, image, places));
     free(places);
-    CHECK(status);
-    return check_other_pages(report, image);
+    return status;
 }
 
 static sonject_status close_image(struct report *report, void *opened)
@@ -422,66 +459,3 @@ static sonject_status change_pixels(struct report *report, void *opened,
 }
 
 const struct image_library tiff_library = {open_image, close_image, read_pixels, change_pixels};
-
-static uint64_t row_bytes(const struct raster_layout *layout)
-{
-    return layout->columns * layout->channels * pixel_bytes(layout->type);
-}
-
-static void set_tags(TIFF *file, const struct image_encoding *encoding)
-{
-    const struct raster_layout *layout = &encoding->layout;
-    const uint64_t rows = NEW_STRIP_BYTES / row_bytes(layout);
-    const uint16_t unspecified = EXTRASAMPLE_UNSPECIFIED;
-    TIFFSetField(file, TIFFTAG_IMAGEWIDTH, (uint32_t)layout->columns);
-    TIFFSetField(file, TIFFTAG_IMAGELENGTH, (uint32_t)layout->rows);
-    TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, (int)(8 * pixel_bytes(layout->type)));
-    TIFFSetField(file, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
-    TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
-                 layout->channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
-    TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, (int)layout->channels);
-    TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, (uint32_t)(rows > 0 ? rows : 1));
-    TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-    TIFFSetField(file, TIFFTAG_SOFTWARE, "sonject");
-    if (layout->channels == 2)
-        TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, &unspecified);
-    TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
-                 layout->type == PIXEL_FLOAT32 ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
-    if (*encoding->description)
-        TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, encoding->description);
-}
-
-/* A new image that is being written. */
-struct tiff_output {
-    TIFF *file;
-    size_t row_bytes;
-    uint32_t row; /* the next row to write */
-};
-
-static bool write_rows(void *tiff_output, const unsigned char *rows, uint64_t count)
-{
-    struct tiff_output *output = tiff_output;
-    for (uint64_t i = 0; i < count; i++, output->row++)
-        if (TIFFWriteScanline(output->file, (void *)(rows + i * output->row_bytes), output->row,
-                              0) < 0)
-            return false;
-    return true;
-}
-
-sonject_status tiff_encode(struct report *report, const struct image_encoding *encoding)
-{
-    const struct raster_layout *layout = &encoding->layout;
-    const bool is_large = layout->rows > CLASSIC_MAX / row_bytes(layout);
-    struct library_fault fault;
-    struct tiff_output output = {tiff_open(encoding->path, is_large ? "w8" : "w", &fault),
-                                 (size_t)row_bytes(layout), 0};
-    bool is_written = false;
-    sonject_status status = SONJECT_OK;
-    if (output.file) {
-        set_tags(output.file, encoding);
-        status = encode_rows(report, encoding, write_rows, &output, &is_written);
-        is_written = is_written && status == SONJECT_OK && TIFFFlush(output.file);
-        TIFFClose(output.file);
-    }
-    return status != SONJECT_OK || is_written ? status : encoding_failure(report, encoding, &fault);
-}

@@ -142,6 +142,27 @@ CLEAN(blocks_in_each_others_place_are_refused)
     expect_message(path, "cannot be replaced");
 }
 
+/* The second page's directory is a copy of the first's, and so names the same strips. */
+CLEAN(pages_in_each_others_place_are_refused)
+{
+    const struct tiff_build build = {
+        .layout = grey8, .compression = COMPRESSION_NONE, .predictor = 1, .block_rows = 16};
+    static unsigned char bytes[1 << 15];
+    const char *path = file_in("a.tif");
+    size_t count;
+    build_tiff(path, &build, make_image(&grey8));
+    const unsigned char *source = load(path, &count);
+    const size_t directory = (size_t)number_from_bytes(source + 4, 4, false);
+    const size_t entries = 2 + 12 * (size_t)number_from_bytes(source + directory, 2, false);
+    const size_t second = (count + 1) / 2 * 2;
+    assert_true(second + entries + 4 < sizeof bytes);
+    memcpy(bytes, source, count);
+    memcpy(bytes + second, source + directory, entries);
+    number_to_bytes(second, bytes + directory + entries, 4, false);
+    write_bytes(path, bytes, second + entries + 4);
+    expect_no_open(path, "strips of several pages in the same place");
+}
+
 /* libtiff writes the files. Some then get a tag (tag, number) that libtiff would not write. */
 CLEAN(tiff_that_is_not_for_sonject_is_refused)
 {
@@ -164,6 +185,7 @@ CLEAN(tiff_that_is_not_for_sonject_is_refused)
         {{.fill_order = FILLORDER_LSB2MSB}, "how pixels are stored", 0, 0},
         {{.has_second_page = true, .second_page_kind = 1}, "smaller copies", 0, 0},
         {{.layout = complex32, .extra_channel = 2}, "transparency", 0, 0},
+        {{.more_tag = TIFFTAG_SUBFILETYPE, .more_value = 1}, "begins with a smaller copy", 0, 0},
         {{.more_tag = TIFFTAG_ORIENTATION, .more_value = 3}, "write it upright", 0, 0},
         {{.more_tag = TIFFTAG_IMAGEDEPTH, .more_value = 2}, "a volume", 0, 0},
         {{.is_tiled = true, .block_columns = 32, .more_tag = TIFFTAG_TILEDEPTH, .more_value = 2},
