@@ -176,6 +176,7 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
     struct swath_file *file = NULL;
     struct raster_layout layout;
     sonject_status status;
+    file_protect(report, params->into);
     CHECK(swath_file_open_beside(report, params->into, params->input, options->channel,
                                  options->array, &file));
     swath_file_layout(file, &layout);

@@ -83,7 +83,8 @@ def test_images_and_scenes_that_are_not_there_or_damaged(sonject, scene, swath):
 
 @pytest.mark.parametrize("words", [
     ("run", "scene.yaml", "-o", "."), ("run", "shadow.yaml", "-o", "."), ("trace", "scene.yaml", "-o", "image.tif"),
-    ("convert", "image.tif", "image.tif", "--db=-40:0"), ("calibrate", "image.tif", "--picture", "image.tif"),
+    ("convert", "image.tif", "image.tif", "--db=-40:0"), ("convert", "image.tif", "twin.tif", "--into", "twin.tif"),
+    ("calibrate", "image.tif", "--picture", "image.tif"),
     ("calibrate", "image.tif", "-o", "linked.tif"), ("quicklook", "shadow.png", "-o", "shadow.png")])
 def test_no_result_replaces_the_image_that_was_read(sonject, scene, tmp_path, words):
     (tmp_path / "swath.tif").rename(tmp_path / "image.tif")
@@ -92,7 +93,8 @@ def test_no_result_replaces_the_image_that_was_read(sonject, scene, tmp_path, wo
     sonject.done("convert", "image.tif", "shadow.png", "--db=-40:0")
     (tmp_path / "shadow.yaml").write_text(scene.read_text().replace(
         "path: image.tif", "path: shadow.png\n  transfer: {kind: decibel, parameter: 0.157, offset: -40}"))
-    before = {name: (tmp_path / name).read_bytes() for name in ("image.tif", "shadow.png")}
+    sonject.done("convert", "image.tif", "twin.tif")
+    before = {name: (tmp_path / name).read_bytes() for name in ("image.tif", "shadow.png", "twin.tif")}
     answer = sonject(*words)
     assert answer.returncode == 2 and "is the image that was read, and no result replaces it" in answer.stderr
     assert {name: (tmp_path / name).read_bytes() for name in before} == before
