@@ -216,6 +216,15 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
                     params->output, params->input);
         geometry.altitude_m = NAN;
     }
+    if (params->black_db < params->white_db)
+        geometry.full_scale = 0.0; /* grey levels are other numbers */
+    if (geometry.full_scale > 0.0 && !is_kept) {
+        report_note(report,
+                    "%s has no place for the full scale of %s: set input.transfer.full_scale to "
+                    "%.0f in its scenes",
+                    params->output, params->input, geometry.full_scale);
+        geometry.full_scale = 0.0;
+    }
     geometry_notes_make(&notes, &geometry);
     size_t count = notes.count;
     memcpy(attributes, notes.attributes, sizeof notes.attributes);

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "swath/image_library.h"
 #include "swath/raster_file.h"
 #include "swath/swath_format.h"
@@ -280,13 +281,28 @@ static sonject_status copy_image(struct report *report, const struct swath_file 
                                      : raster_file_copy_with_patch(report, file->decoded, copy);
 }
 
+/* Returns the largest number that a note states (FULL_SCALE_NOTE); 0 if none does. */
+static uint32_t noted_largest(const struct swath_file *file)
+{
+    char text[32];
+    const char *rest;
+    double number;
+    return swath_file_attribute(file, FULL_SCALE_NOTE, text, sizeof text) &&
+                   text_to_number(text, &number, &rest) && *rest == '\0' && number >= 1.0 &&
+                   number <= (double)UINT32_MAX &&
+                   (file->layout.type == PIXEL_FLOAT32 ||
+                    number <= pixel_full_scale(file->layout.type))
+               ? (uint32_t)number
+               : 0;
+}
+
 static sonject_status open_decoded(struct report *report, struct swath_file *file, int32_t channel,
                                    const char *array)
 {
     (void)channel;
     CHECK(decoded_image_open(report, file->path, array, &file->decoded));
     file->layout = file->decoded->layout;
-    file->largest = file->decoded->largest;
+    file->largest = file->decoded->largest > 0 ? file->decoded->largest : noted_largest(file);
     return SONJECT_OK;
 }
 

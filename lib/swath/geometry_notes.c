@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -48,6 +49,11 @@ void geometry_notes_make(struct geometry_notes *notes, const struct noted_geomet
         if (isfinite(number))
             note(notes, number_name(i, geometry),
                  text_of_number(text, sizeof notes->texts[0], number, DIGITS));
+    }
+    if (geometry->full_scale > 0.0) {
+        char *text = notes->texts[notes->count];
+        snprintf(text, sizeof notes->texts[0], "%.0f", geometry->full_scale);
+        note(notes, FULL_SCALE_NOTE, text);
     }
     if (geometry->knows_side)
         note(notes, "sonject:side",
@@ -110,6 +116,7 @@ static void read_texts(const struct swath_file *file, struct noted_geometry *geo
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry)
 {
     geometry->axis = swath_file_range_axis(file);
+    geometry->full_scale = (double)swath_file_largest(file);
     if (swath_file_recording(file))
         read_recording(swath_file_recording(file), geometry);
     else

@@ -6,7 +6,7 @@
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"
 
-#define GEOMETRY_NOTES_MAX 10
+#define GEOMETRY_NOTES_MAX 11
 
 /* The geometry of a file's pixels and the sonar's data; NaN where unknown. */
 struct noted_geometry {
@@ -15,6 +15,7 @@ struct noted_geometry {
     double first_along_track_m, first_range_m;
     double nadir_column;
     double altitude_m, frequency_hz, bandwidth_hz;
+    double full_scale;    /* see FULL_SCALE_NOTE; 0: the type's */
     bool altitude_varies; /* the altitude changes too much along the line for a mean */
     bool knows_side;
     uint32_t side; /* SONJECT_SIDE_... */

@@ -10,6 +10,9 @@
 
 /* A named text that is stored with an image, as a line "name=value" of its description. Neither
  * part may hold a newline. */
+/* The note of the largest number that a file may hold, if that is not its type's. */
+#define FULL_SCALE_NOTE "sonject:full_scale"
+
 struct raster_attribute {
     const char *name;
     const char *value;

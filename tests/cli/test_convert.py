@@ -189,6 +189,21 @@ def test_types_of_samples_stay(sonject, tmp_path, swath):
     assert not (tmp_path / "b.png").exists()
 
 
+@pytest.mark.parametrize("output", ["a.tif", "a.png", "a.h5"])
+def test_the_full_scale_stays(sonject, tmp_path, sides, output):
+    """A curve gives the same amplitudes for int16 samples and for the uint16 ones that they become."""
+    numpy.save(tmp_path / "a.npy", (sides[0] // 3).astype("i2"))
+    sonject.done("convert", "a.npy", output)
+    curve = ("--transfer", "schlick:20")
+    expected = sonject.done("measure", "a.npy", *curve).stdout
+    assert sonject.done("measure", output, *curve).stdout == expected
+    noted = sonject.done("convert", output, "b.npy")
+    assert "b.npy has no place for the full scale" in noted.stderr and "full_scale to 32767" in noted.stderr
+    assert sonject.done("measure", "b.npy", *curve).stdout != expected
+    sonject.done("convert", output, "grey.tif", "--db=-60:0")
+    assert b"full_scale" not in (tmp_path / "grey.tif").read_bytes()
+
+
 def test_ground_range_and_back(sonject, tmp_path, line, sides):
     sonject.done("convert", "line.xtf", "g.tif", "--channel", "port", "--range-axis", "ground")
     told = (tmp_path / "g.tif").read_bytes()
