@@ -161,6 +161,8 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
     file_protect(report, params->input);
     CHECK(swath_file_open_beside(report, params->input, params->into, options->channel,
                                  options->array, &file));
+    if (!(params->black_db < params->white_db))
+        swath_file_refuse_rounding(file);
     sonject_status status =
         swath_file_read_all(report, file, &conversion->layout, &conversion->pixels);
     THEN(status, take_geometry(report, conversion, file, params, options));

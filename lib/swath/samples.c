@@ -113,6 +113,12 @@ static void exchange_floats(const struct stored_samples *stored, bool writes, un
     }
 }
 
+/* Returns whether float32 would round a number that must stay exact. */
+static bool is_rounded(const struct stored_samples *stored, enum stored_type type, double number)
+{
+    return stored->is_exact && is_whole(type) && (double)(float)number != number;
+}
+
 static bool exchange(const struct stored_samples *stored, uint32_t channel, enum pixel_type type,
                      bool writes, unsigned char *bytes, unsigned char *shown)
 {
@@ -125,7 +131,7 @@ static bool exchange(const struct stored_samples *stored, uint32_t channel, enum
         return store(stored, from, pixel_number(type, shown, 0), bytes);
     const double number = scale_of(stored) * stored_number(stored->is_big_endian, from, bytes);
     return !(stored->are_amplitudes && is_whole(from) && number < 0.0) &&
-           pixel_store(type, shown, 0, number);
+           !is_rounded(stored, from, number) && pixel_store(type, shown, 0, number);
 }
 
 static sonject_status refuse_sample(struct report *report, const char *path,
@@ -133,7 +139,9 @@ static sonject_status refuse_sample(struct report *report, const char *path,
                                     uint64_t row, uint64_t column, double number, bool writes)
 {
     char why[80] = "beyond what float32 holds: scale the array";
-    if (!writes && is_whole(type))
+    if (!writes && is_rounded(stored, type, number))
+        snprintf(why, sizeof why, "%.0f, which float32 would round: scale the array", number);
+    else if (!writes && is_whole(type))
         snprintf(why, sizeof why, "more than its array's type holds");
     if (writes && isnan(number))
         snprintf(why, sizeof why, "not a number, which the file cannot hold");

@@ -131,6 +131,11 @@ double swath_file_full_scale(const struct swath_file *file)
     return file->largest > 0 ? (double)file->largest : pixel_full_scale(file->layout.type);
 }
 
+void swath_file_refuse_rounding(struct swath_file *file)
+{
+    file->lines.is_exact = true;
+}
+
 void swath_file_limit(const struct swath_file *file, sonject_transfer_params *transfer)
 {
     const double largest = (double)file->largest;
@@ -282,6 +287,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
         .is_big_endian = lines->is_big_endian,
         .are_amplitudes = file->layout.channels == 1,
         .clips = lines->clips,
+        .is_exact = lines->is_exact,
         .largest = lines->scales ? 0 : file->largest,
     };
     sonject_status status = line ? SONJECT_OK : report_out_of_memory(report, "a row");

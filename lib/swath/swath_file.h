@@ -61,6 +61,9 @@ const struct recording *swath_file_recording(const struct swath_file *file);
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity);
 
+/* Makes reading refuse (INPUT) integers that float32 would round. */
+void swath_file_refuse_rounding(struct swath_file *file);
+
 /* Reads a region's stored pixels, row after row, channels interleaved. Errors: INPUT (cut short,
  * damaged), STORAGE, MEMORY. */
 sonject_status swath_file_read(struct report *report, struct swath_file *file,

@@ -35,6 +35,7 @@ struct stored_samples {
     bool is_big_endian;
     bool are_amplitudes; /* integer samples must not be negative */
     bool clips;          /* numbers beyond an integer type are clipped, else refused */
+    bool is_exact;       /* integers that float32 would round are refused when they are read */
     double scale;        /* an image's number over the file's; 0 stands for 1 */
     uint32_t largest;    /* the largest number that may be written; 0: the type's */
 };
@@ -78,6 +79,7 @@ struct sample_lines {
     bool is_transposed; /* lines are columns */
     bool is_reversed;   /* column 0 is the last of its line */
     bool clips;         /* see stored_samples */
+    bool is_exact;      /* see stored_samples */
     bool is_big_endian;
 };
 

@@ -189,6 +189,20 @@ def test_types_of_samples_stay(sonject, tmp_path, swath):
     assert not (tmp_path / "b.png").exists()
 
 
+@pytest.mark.parametrize("kind", ["u4", "i4"])
+def test_integers_that_floats_would_round_are_refused(sonject, tmp_path, kind):
+    pixels = numpy.full((4, 5), 2**24, kind)
+    pixels[1, 2] = 2**24 + 2
+    numpy.save(tmp_path / "a.npy", pixels)
+    sonject.done("convert", "a.npy", "a.tif")
+    assert numpy.array_equal(images.read_tiff(tmp_path / "a.tif"), pixels)
+    pixels[2, 3:] = 2**24 + 1
+    numpy.save(tmp_path / "a.npy", pixels)
+    assert_refused(sonject("convert", "a.npy", "b.tif"), 3,
+                   "the sample at row 2, column 3 is 16777217, which float32 would round")
+    sonject.done("convert", "a.npy", "grey.png", "--db=-60:0")
+
+
 @pytest.mark.parametrize("output", ["a.tif", "a.png", "a.h5"])
 def test_the_full_scale_stays(sonject, tmp_path, sides, output):
     """A curve gives the same amplitudes for int16 samples and for the uint16 ones that they become."""
