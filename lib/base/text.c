@@ -210,6 +210,19 @@ bool text_is_printable(const char *text)
     return true;
 }
 
+bool text_is_beyond_ascii(const char *text)
+{
+    const unsigned char *byte = (const unsigned char *)text;
+    bool is_beyond = false;
+    for (size_t length; *byte; byte += length) {
+        length = character_length(byte);
+        if (length == 0)
+            return false;
+        is_beyond = is_beyond || length > 1;
+    }
+    return is_beyond;
+}
+
 void text_make_printable(char *text)
 {
     const unsigned char *byte = (const unsigned char *)text;

@@ -31,6 +31,9 @@ bool contains_ignoring_case(const char *text, const char *needle);
  * must be printable. */
 bool text_is_printable(const char *text);
 
+/* Returns whether text is well-formed UTF-8 and has characters beyond ASCII. */
+bool text_is_beyond_ascii(const char *text);
+
 /* Makes a text printable, as all text for a terminal must be. A space replaces each character below
  * U+0020, '?' each other one or byte. */
 void text_make_printable(char *text);

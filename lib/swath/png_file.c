@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 #define DESCRIPTION "Description" /* keyword of the description */
 
@@ -279,7 +280,10 @@ static bool write_head(struct png_output *output)
     const struct image_encoding *encoding = output->encoding;
     const struct raster_layout *layout = &encoding->layout;
     const int bits = layout->type == PIXEL_UINT8 ? 8 : 16;
-    png_text text = {.compression = PNG_TEXT_COMPRESSION_NONE,
+    /* PNG's plain texts are Latin-1; only its international ones are UTF-8 */
+    png_text text = {.compression = text_is_beyond_ascii(encoding->description)
+                                        ? PNG_ITXT_COMPRESSION_NONE
+                                        : PNG_TEXT_COMPRESSION_NONE,
                      .key = DESCRIPTION,
                      .text = (char *)encoding->description};
     if (setjmp(png_jmpbuf(output->png)) != 0)

@@ -47,8 +47,8 @@ def tiff_bytes(pixels, width=None, height=None, deflated=False):
     return struct.pack("<2sHI", b"II", 42, 8 + len(data) + len(padding)) + data + padding + directory
 
 
-def png_bytes(pixels, description=b""):
-    """Returns an 8 bit grey PNG of (rows, columns)."""
+def png_bytes(pixels, description=b"", head=b"tEXtDescription\0"):
+    """Returns an 8 bit grey PNG of (rows, columns). head: what stands before the description in its chunk."""
     rows, columns = pixels.shape
     lines = b"".join(b"\0" + row.astype(numpy.uint8).tobytes() for row in pixels)
 
@@ -60,7 +60,7 @@ def png_bytes(pixels, description=b""):
     return (
         b"\x89PNG\r\n\x1a\n"
         + chunk(b"IHDR", header)
-        + chunk(b"tEXt", b"Description\0" + description)
+        + chunk(head[:4], head[4:] + description)
         + chunk(b"IDAT", zlib.compress(lines))
         + chunk(b"IEND", b"")
     )

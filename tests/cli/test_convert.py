@@ -156,10 +156,14 @@ def check_injection(sonject, folder, name, before, extension):
     return answer
 
 
-def test_png_goes_out_as_a_new_png(sonject, tmp_path, sides):
+@pytest.mark.parametrize("description", [
+    b"tEXtDescription\0from the pier", b"tEXtDescription\0" + "Grüße".encode("latin-1"),
+    b"iTXtDescription\0\0\0\0\0" + "Grüße".encode()])
+def test_png_goes_out_as_a_new_png(sonject, tmp_path, sides, description):
     before = (sides[0] // 64).astype("u1")
-    (tmp_path / "line.png").write_bytes(images.png_bytes(before))
+    (tmp_path / "line.png").write_bytes(images.png_bytes(before, head=description))
     answer = check_injection(sonject, tmp_path, "line.png", before, ".png")
+    assert description in (tmp_path / "out/image.png").read_bytes()
     assert "note: image.png is a new file" in answer.stderr
     assert sonject.done("run", "scene.yaml", "-o", "again", "--quiet").stderr == ""
     assert_refused(sonject("convert", "line.png", "b.png", "--into", "line.png"), 3,
