@@ -90,8 +90,11 @@ static bool store(const struct stored_samples *stored, enum stored_type type, do
         (isnan(old) && isnan(number)))
         return !is_whole(type) || old <= most;
     number /= scale_of(stored);
-    if (is_whole(type) && stored->clips && !isnan(number))
+    if (is_whole(type) && stored->clips && !isnan(number)) {
+        if (stored->clipped)
+            *stored->clipped += number < least - 0.5 || number > most + 0.5; /* not just rounded */
         number = fmin(fmax(number, least), most);
+    }
     if (is_whole(type) && !(number >= least && number <= (double)(float)most))
         return false;
     put_number(is_whole(type) ? fmin(floor(number + 0.5), most) : number, type, bytes,

@@ -261,6 +261,14 @@ sonject_status swath_close_copy(struct report *report, const struct swath_copy *
     return status;
 }
 
+static void tell_clipped(struct report *report, const char *path, uint64_t count)
+{
+    report_note(report,
+                "%s cannot hold %llu of the changed numbers, which are beyond their pings' "
+                "samples: they are clipped",
+                path, (unsigned long long)count);
+}
+
 /* Reads a region's lines one at a time, or writes them to a copy if out is not NULL. */
 static sonject_status exchange_lines(struct report *report, const struct swath_file *file,
                                      const struct region *region, void *pixels,
@@ -276,6 +284,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
                             : lines->is_reversed
                                 ? file->layout.columns - region->first_column - region->columns
                                 : region->first_column;
+    uint64_t clipped = 0;
     unsigned char *line = allocate_array(bytes, 1);
     const ptrdiff_t step = (ptrdiff_t)file->layout.channels;
     unsigned char *first = lines->is_reversed && line ? line + bytes - pixel : line;
@@ -287,6 +296,7 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
         .is_big_endian = lines->is_big_endian,
         .are_amplitudes = file->layout.channels == 1,
         .clips = lines->clips,
+        .clipped = &clipped,
         .is_exact = lines->is_exact,
         .largest = lines->scales ? 0 : file->largest,
     };
@@ -310,6 +320,8 @@ static sonject_status exchange_lines(struct report *report, const struct swath_f
             status = file_failure(report, copy->path, "write", errno);
     }
     free(line);
+    if (status == SONJECT_OK && clipped > 0)
+        tell_clipped(report, copy->path, clipped);
     return status;
 }
 

@@ -36,6 +36,7 @@ struct stored_samples {
     bool are_amplitudes; /* integer samples must not be negative */
     bool clips;          /* numbers beyond an integer type are clipped, else refused */
     bool is_exact;       /* integers that float32 would round are refused when they are read */
+    uint64_t *clipped;   /* counts clipped numbers; NULL: nobody asks */
     double scale;        /* an image's number over the file's; 0 stands for 1 */
     uint32_t largest;    /* the largest number that may be written; 0: the type's */
 };
