@@ -94,6 +94,9 @@ static size_t write_runs(const struct contact *contact, const struct label_reque
         if (writer.is_inside && box->rows < request->rows)
             end_run(&writer, start + box->first_row + box->rows);
     }
+    if (writer.is_inside) /* the last column is set down to the image's last row */
+        end_run(&writer,
+                (request->patch.first_column + box->first_column + box->columns) * request->rows);
     if (writer.reached < request->rows * request->columns)
         end_run(&writer, request->rows * request->columns);
     return writer.count;

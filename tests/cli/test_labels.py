@@ -108,6 +108,17 @@ def test_every_format_has_the_boxes_of_the_masks(folder, seen):
     assert [entry["occluded"] for entry in coco["annotations"]] == [True, False, False]
 
 
+def test_a_mask_across_all_rows_ends_where_it_ends(sonject, scene, tmp_path):
+    """The mask begins in the first row and ends in the last one, in its last column, far from the image's end."""
+    rod = {"shape": "cylinder", "length": 2.38, "diameter": 0.2, "heading": "6 deg"}
+    sonject.done("run", scene, "-o", "out", "--set", f"objects={json.dumps([rod])}")
+    labels = read_png(tmp_path / "out" / "labels.png")
+    _, column, rows, columns = box_of(labels)
+    assert rows == ROWS and column + columns < COLUMNS and labels[-1, column + columns - 1] == 1
+    (annotation,) = read_json(tmp_path / "out" / "coco.json")["annotations"]
+    assert numpy.array_equal(decoded(annotation["segmentation"]), labels)
+
+
 def test_labels_are_colours_that_read_as_numbers(sonject, folder, tmp_path):
     content = (folder / "labels.png").read_bytes()
     palette = content[content.index(b"PLTE") + 4 :][: 3 * 256]
