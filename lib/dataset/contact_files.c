@@ -1,4 +1,4 @@
-/* Sets of labelled contacts: their formats, images and boxes, and pairs of highlight and shadow. */
+/* Sets of labelled contacts: their formats, images and boxes. */
 #include "dataset/contact_files.h"
 
 #include <math.h>
@@ -11,8 +11,7 @@
 #include "base/text.h"
 #include "dataset/contact_reader.h"
 
-#define CONTACTS_MAX   100000
-#define PAIRING_ROUNDS 8 /* no labelling has a chain of boxes that needs more */
+#define CONTACTS_MAX 100000
 
 /* ---- What readers add. */
 
@@ -174,120 +173,11 @@ sonject_status contact_reader_add(struct contact_reader *reader, const char *pla
     CHECK_MEMORY(reader->report, contacts, "contacts");
     set->contacts = contacts;
     struct labelled_contact *contact = &contacts[set->count++];
-    contact->image = image->number;
-    contact->part = part;
-    contact->side = image->side;
+    *contact = (struct labelled_contact){.image = image->number, .part = part, .side = image->side};
     take_pixels(box->row, box->rows, image->rows, &contact->box.first_row, &contact->box.rows);
     take_pixels(box->column, box->columns, image->columns, &contact->box.first_column,
                 &contact->box.columns);
     return SONJECT_OK;
-}
-
-/* ---- Highlights and their shadows. */
-
-static int compare_contacts(const void *one, const void *other)
-{
-    const struct labelled_contact *a = one, *b = other;
-    const uint64_t keys[][2] = {{a->image, b->image},
-                                {a->side, b->side},
-                                {a->box.first_row, b->box.first_row},
-                                {a->box.first_column, b->box.first_column},
-                                {a->box.rows, b->box.rows},
-                                {a->box.columns, b->box.columns},
-                                {a->part, b->part}};
-    for (size_t i = 0; i < COUNT(keys); i++)
-        if (keys[i][0] != keys[i][1])
-            return keys[i][0] < keys[i][1] ? -1 : 1;
-    return 0;
-}
-
-/* Returns the distance, pixels, from the end of a highlight to the start of a shadow: 0 where the
- * shadow begins there, at the same rows. Infinite where the two cannot be of one object. */
-static double distance_between(const struct labelled_contact *one,
-                               const struct labelled_contact *other)
-{
-    const bool is_first = one->part == LABELLED_HIGHLIGHT;
-    const sonject_box *highlight = is_first ? &one->box : &other->box;
-    const sonject_box *shadow = is_first ? &other->box : &one->box;
-    if (one->part + other->part != LABELLED_HIGHLIGHT + LABELLED_SHADOW ||
-        highlight->first_row >= shadow->first_row + shadow->rows ||
-        shadow->first_row >= highlight->first_row + highlight->rows ||
-        highlight->first_column >= shadow->first_column + shadow->columns)
-        return INFINITY;
-    const double highlight_end = (double)(highlight->first_column + highlight->columns);
-    const double highlight_row = (double)highlight->first_row + 0.5 * (double)highlight->rows;
-    const double shadow_row = (double)shadow->first_row + 0.5 * (double)shadow->rows;
-    return hypot((double)shadow->first_column - highlight_end, shadow_row - highlight_row);
-}
-
-/* Returns the number of the nearest contact that may be the other part of one; count: none.
- * contacts: an image's, in the order of rows. */
-static size_t find_nearest(const struct labelled_contact *contacts, size_t count, size_t of)
-{
-    const sonject_box *box = &contacts[of].box;
-    double least = INFINITY;
-    size_t nearest = count;
-    for (size_t i = 0; i < count; i++) {
-        if (contacts[i].box.first_row >= box->first_row + box->rows)
-            break;
-        const double distance = distance_between(&contacts[of], &contacts[i]);
-        if (distance < least) {
-            least = distance;
-            nearest = i;
-        }
-    }
-    return nearest;
-}
-
-/* Joins each highlight and shadow of an image that are nearest to each other, until none are left.
- * A shadow's box that was joined into another gets 0 rows. */
-static void pair_parts(struct labelled_contact *contacts, size_t count)
-{
-    bool goes_on = true;
-    for (int round = 0; goes_on && round < PAIRING_ROUNDS; round++) {
-        goes_on = false;
-        for (size_t i = 0; i < count; i++) {
-            struct labelled_contact *shadow = &contacts[i];
-            const size_t other =
-                shadow->part == LABELLED_SHADOW ? find_nearest(contacts, count, i) : count;
-            if (other == count || find_nearest(contacts, count, other) != i)
-                continue;
-            sonject_box *box = &contacts[other].box;
-            const sonject_box from = *box;
-            const sonject_box *add = &shadow->box;
-            box->first_row = from.first_row < add->first_row ? from.first_row : add->first_row;
-            box->first_column =
-                from.first_column < add->first_column ? from.first_column : add->first_column;
-            const uint64_t row_ends[] = {from.first_row + from.rows, add->first_row + add->rows};
-            const uint64_t ends[] = {from.first_column + from.columns,
-                                     add->first_column + add->columns};
-            box->rows = row_ends[row_ends[1] > row_ends[0]] - box->first_row;
-            box->columns = ends[ends[1] > ends[0]] - box->first_column;
-            contacts[other].part = shadow->part = LABELLED_BOTH;
-            shadow->box.rows = 0;
-            goes_on = true;
-        }
-    }
-}
-
-static void pair_all(struct contact_set *set)
-{
-    struct labelled_contact *contacts = set->contacts;
-    size_t kept = 0;
-    if (set->count == 0)
-        return;
-    qsort(contacts, set->count, sizeof *contacts, compare_contacts);
-    for (size_t start = 0, end; start < set->count; start = end) {
-        for (end = start; end < set->count && contacts[end].image == contacts[start].image &&
-                          contacts[end].side == contacts[start].side;)
-            end++;
-        pair_parts(&contacts[start], end - start);
-    }
-    for (size_t i = 0; i < set->count; i++)
-        if (contacts[i].box.rows > 0)
-            contacts[kept++] = contacts[i];
-    set->count = kept;
-    qsort(contacts, kept, sizeof *contacts, compare_contacts);
 }
 
 /* ---- Reading. */
@@ -369,7 +259,6 @@ static sonject_status read_labels(struct contact_reader *reader, const char *pat
     if (reader->choice->class_count == 0 && class_count > 1)
         report_note(reader->report, "contacts of %zu classes are treated as one class: %s",
                     class_count, classes);
-    pair_all(reader->set);
     return SONJECT_OK;
 }
 

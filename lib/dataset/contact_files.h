@@ -20,6 +20,8 @@ struct labelled_contact {
     uint32_t part;  /* enum labelled_part that the box is around */
     uint32_t side;  /* enum recorded_side of a recording; 0: not given */
     sonject_box box;
+    uint32_t seen_side; /* side that the image shows there; 0: unknown, or the image shows one */
+    bool is_reversed;   /* range grows to the left there */
 };
 
 /* Quantiles of the extents of highlights and shadows. */
@@ -51,15 +53,20 @@ struct contact_choice {
  * or a .yaml file of quantiles. Where a folder has both, XML is read. YOLO's class names come from
  * classes.txt or data.yaml beside or above the texts; a class without a name is its number. A class
  * with "shadow", "highlight" or "echo" in its name tells the part; boxes of other classes are
- * around the choice's part. A note tells where several of these other classes are read together. A
- * shadow's box and the nearest highlight's box become one contact, if both share rows of an image
- * and the highlight does not begin behind the shadow, columns counting slant range. A box without a
- * partner stays as it is. Contacts are in the order of image, row and column; images without
- * contacts are not listed. Images are looked for beside the labels, in "images" below or beside the
- * labels, and where data sets keep them. set: for contact_set_clear, also on failure. Errors: INPUT
- * (file, line or member, what is wrong), UNSUPPORTED, STORAGE, MEMORY. */
+ * around the choice's part. A note tells where several of these other classes are read together.
+ * Each box is a contact so far. Images without contacts are not listed. Images are looked for
+ * beside the labels, in "images" below or beside the labels, and where data sets keep them. set:
+ * for contact_set_clear, also on failure. Errors: INPUT (file, line or member, what is wrong),
+ * UNSUPPORTED, STORAGE, MEMORY. */
 sonject_status contact_set_read(struct report *report, const char *path,
                                 const struct contact_choice *choice, struct contact_set *set);
+
+/* Makes a shadow's box and the nearest highlight's box one contact, if both share rows of an image
+ * and its side, and the highlight does not begin behind the shadow, columns counting slant range.
+ * A box without a partner stays as it is. Needs seen_side and is_reversed. Contacts are then in the
+ * order of image, side, row and column. */
+void contact_set_pair(struct contact_set *set);
+
 void contact_set_clear(struct contact_set *set);
 
 #endif

@@ -23,7 +23,11 @@ struct contact_chip {
 
 void contact_chip_clear(struct contact_chip *chip);
 
-/* Cuts a labelled contact out of its image, which the campaign's scene reads. Geometry and altitude
+/* Finds the side on which each label lies, and where range grows to the left, as the campaign's
+ * scene reads the images. Errors: those of scenes and swaths. */
+sonject_status contact_set_place(struct sonject_campaign *campaign, struct contact_set *set);
+
+/* Cuts a placed contact out of its image, which the campaign's scene reads. Geometry and altitude
  * are the image's own where the image gives them. Errors: those of scenes and swaths. */
 sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *image,
                                  const struct labelled_contact *contact, struct contact_chip *chip);

@@ -155,15 +155,20 @@ static uint32_t side_of_label(const sonject_box *label, double nadir_column)
     return !(nadir_column > 0.0) ? 0 : middle < nadir_column ? RECORDED_PORT : RECORDED_STARBOARD;
 }
 
-/* Reads what an image says of itself. nadir_column: 0 where the image shows one side. */
+/* What an image says of itself. */
+struct image_facts {
+    struct raster_layout layout;
+    bool tells_geometry, tells_altitude;
+    double nadir_column; /* 0 where the image shows one side */
+};
+
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
-                                     uint32_t side, struct raster_layout *layout,
-                                     bool *tells_geometry, bool *tells_altitude,
-                                     double *nadir_column)
+                                     uint32_t side, struct image_facts *facts)
 {
     struct scene scene;
     struct swath_file *file = NULL;
     char ends[GREY_TEXT];
+    memset(facts, 0, sizeof *facts);
     CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, side), side,
                            NULL, false, false, &scene));
     sonject_status status =
@@ -177,54 +182,66 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     if (status == SONJECT_OK) {
         struct noted_geometry noted;
         sonject_geometry_params told = scene.geometry;
-        swath_file_layout(file, layout);
+        swath_file_layout(file, &facts->layout);
         geometry_notes_read(file, &noted);
-        *tells_geometry = geometry_notes_to_params(&noted, &told);
-        *tells_altitude = isfinite(noted.altitude_m);
-        *nadir_column = told.nadir_column;
+        facts->tells_geometry = geometry_notes_to_params(&noted, &told);
+        facts->tells_altitude = isfinite(noted.altitude_m);
+        facts->nadir_column = told.nadir_column;
     }
     swath_file_close(&file);
     scene_clear(&scene);
     return status;
 }
 
+sonject_status contact_set_place(struct sonject_campaign *campaign, struct contact_set *set)
+{
+    struct image_facts facts;
+    for (size_t i = 0; i < set->count; i++) {
+        struct labelled_contact *contact = &set->contacts[i];
+        const struct labelled_contact *before = i > 0 ? contact - 1 : NULL;
+        if (!before || before->image != contact->image || before->side != contact->side)
+            CHECK(describe_image(campaign, set->images[contact->image], contact->side, &facts));
+        contact->seen_side =
+            contact->side ? contact->side : side_of_label(&contact->box, facts.nadir_column);
+        contact->is_reversed = facts.nadir_column > 0.0 && contact->seen_side == RECORDED_PORT;
+    }
+    return SONJECT_OK;
+}
+
 sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *image,
                                  const struct labelled_contact *contact, struct contact_chip *chip)
 {
     const sonject_box *label = &contact->box;
-    struct raster_layout layout = {0};
+    const uint32_t side = contact->seen_side;
+    struct image_facts facts;
+    const struct raster_layout *layout = &facts.layout;
     struct scene scene;
     struct swath swath;
-    bool tells_geometry = false;
-    bool tells_altitude = false;
-    double nadir_column = 0.0;
     memset(chip, 0, sizeof *chip);
-    CHECK(describe_image(campaign, image, contact->side, &layout, &tells_geometry, &tells_altitude,
-                         &nadir_column));
-    if (label->first_row >= layout.rows || label->rows > layout.rows - label->first_row ||
-        label->first_column >= layout.columns ||
-        label->columns > layout.columns - label->first_column)
+    CHECK(describe_image(campaign, image, contact->side, &facts));
+    if (label->first_row >= layout->rows || label->rows > layout->rows - label->first_row ||
+        label->first_column >= layout->columns ||
+        label->columns > layout->columns - label->first_column)
         return input_failure(campaign->report, image,
                              "has %llu x %llu pixels, and a label's box at row %llu, column %llu "
                              "is not inside: correct the label",
-                             (unsigned long long)layout.rows, (unsigned long long)layout.columns,
+                             (unsigned long long)layout->rows, (unsigned long long)layout->columns,
                              (unsigned long long)label->first_row,
                              (unsigned long long)label->first_column);
     const struct window_box window =
-        chip_window(label, (size_t)layout.rows, (size_t)layout.columns);
+        chip_window(label, (size_t)layout->rows, (size_t)layout->columns);
     const struct window_box all = {0, 0, window.rows, window.columns};
     sonject_box inner = *label;
     inner.first_row -= window.first_row;
     inner.first_column -= window.first_column;
-    const uint32_t side = contact->side ? contact->side : side_of_label(label, nadir_column);
     const struct swath_plan *plan = swath_of_image(&campaign->campaign, image, side);
     if (side == 0 && swath_of_image(&campaign->campaign, image, RECORDED_PORT) !=
                          swath_of_image(&campaign->campaign, image, RECORDED_STARBOARD))
         return input_failure(campaign->report, image,
                              "shows two sides, which are two swaths of the campaign: list its "
                              "contacts in a .csv table with a column side, port or starboard");
-    CHECK(read_image_scene(campaign, image, plan, contact->side, &window, tells_geometry,
-                           tells_altitude, &scene));
+    CHECK(read_image_scene(campaign, image, plan, contact->side, &window, facts.tells_geometry,
+                           facts.tells_altitude, &scene));
     if (side != 0)
         scene.geometry.side = side == RECORDED_PORT ? SONJECT_SIDE_PORT : SONJECT_SIDE_STARBOARD;
     sonject_status status = swath_open_stored(campaign->report, &scene, &campaign->store, &swath);

@@ -122,7 +122,8 @@ sonar: {frequency: 300 kHz, bandwidth: 20 kHz, altitude: 5 m, resolution: 6 cm, 
 
 
 def inject_contacts(sonject, folder, side, ranges):
-    """Puts twelve boxes into a side of line.tif at these slant ranges, m. Returns CSV lines of their boxes."""
+    """Puts twelve boxes into a side of line.tif at these slant ranges, m. Returns CSV lines of the boxes of
+    highlights and shadows."""
     objects = [f"{{name: box, shape: box, length: {1.2 + i / 40} m, width: 0.7 m, height: 0.45 m, heading: {40 * i} deg, "
                f"level: {{over_seabed: 15 dB}}{ROUGH}, position: {{along_track: {2 + 4 * i} m, slant_range: {r} m}}}}"
                for i, r in enumerate(ranges)]
@@ -131,8 +132,8 @@ def inject_contacts(sonject, folder, side, ranges):
     sonject.done("run", "contacts.yaml", "-o", f"with_{side}", "--quiet")
     (folder / f"with_{side}" / "image.tif").replace(folder / "line.tif")
     truth = json.loads((folder / f"with_{side}" / "truth.json").read_text())
-    return "".join(f"line.tif,{','.join(str(thing['box'][key]) for key in ('row', 'column', 'rows', 'columns'))}\n"
-                   for thing in truth["objects"])
+    return "".join(f"line.tif,{','.join(str(thing[part][key]) for key in ('row', 'column', 'rows', 'columns'))},{part}\n"
+                   for thing in truth["objects"] for part in ("highlight", "shadow"))
 
 
 def test_contacts_are_measured_side_by_side(sonject, tmp_path):
@@ -141,13 +142,14 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
     sides = [images.read_tiff(tmp_path / f"seabed_{number}.tif") for number in (1, 2)]
     (tmp_path / "line.tif").write_bytes(images.tiff_bytes(numpy.hstack([sides[0][:, ::-1], sides[1]])))
     ratios = {"port": numpy.linspace(1.8, 2.8, 12), "starboard": numpy.linspace(3.2, 4.8, 12)}
-    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "".join(
+    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns,part\n" + "".join(
         inject_contacts(sonject, tmp_path, side, 5 * ratio) for side, ratio in ratios.items()))
     (tmp_path / "scene.yaml").write_text(SIDES)
     (tmp_path / "start.yaml").write_text(fitting.campaign(fitting.START, 40, 3, 64, 96, ("box",), ROUGH).replace(
         "swaths: [{path: seabed_1.tif}, {path: seabed_2.tif}]", "swaths:" + "".join(
             f"\n  - path: line.tif\n    set: {{input.geometry.side: {side}}}" for side in ratios)))
     sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--quiet")
+    assert page_data(tmp_path, "fitted.html")["contacts"] == 24  # of 48 boxes
     text = (tmp_path / "fitted.yaml").read_text()
     limits = numpy.array([(float(a), float(b)) for a, b in re.findall(
         r"range_over_altitude: \[([\d.]+), ([\d.]+)\]", text)])

@@ -44,6 +44,7 @@ static void expect_contacts(const char *name, uint32_t part, const struct expect
     struct contact_set set;
     EXPECT_OK(&report, read_set(name, part, &set));
     assert_string_equal(report.message, "");
+    contact_set_pair(&set);
     assert_int_equal(set.count, count);
     assert_int_equal(set.quantiles.count, 0);
     for (size_t i = 0; i < count; i++) {
@@ -500,6 +501,49 @@ WITH_LABELS(test_own_labels_are_read_as_they_were_written)
 
 /* ---- Highlights and shadows. */
 
+#define MIRROR 1000
+
+/* Expects the same contacts, in any order, where range grows to the left. */
+static void expect_mirrored(const char *name, const struct expected *expected, size_t count)
+{
+    struct contact_set set;
+    EXPECT_OK(&report, read_set(name, LABELLED_BOTH, &set));
+    for (size_t i = 0; i < set.count; i++) {
+        sonject_box *box = &set.contacts[i].box;
+        box->first_column = MIRROR - box->first_column - box->columns;
+        set.contacts[i].is_reversed = true;
+    }
+    contact_set_pair(&set);
+    assert_int_equal(set.count, count);
+    for (size_t i = 0; i < count; i++) {
+        size_t found = 0;
+        for (size_t k = 0; k < count; k++) {
+            const struct labelled_contact *contact = &set.contacts[k];
+            sonject_box box = contact->box;
+            box.first_column = MIRROR - box.first_column - box.columns;
+            found += contact->part == expected[i].part &&
+                     memcmp(&box, &expected[i].box, sizeof box) == 0;
+        }
+        assert_int_equal(found, 1);
+    }
+    contact_set_clear(&set);
+}
+
+/* Parts of two sides of an image are no contact, though they lie side by side. */
+WITH_LABELS(test_parts_of_two_sides_are_two_contacts)
+{
+    struct contact_set set;
+    put_image("a.npy");
+    put("l.csv", "image,part,row,column,rows,columns\na.npy,highlight,5,10,4,3\n"
+                 "a.npy,shadow,5,13,4,9\n");
+    EXPECT_OK(&report, read_set("l.csv", LABELLED_BOTH, &set));
+    set.contacts[0].seen_side = 1;
+    set.contacts[1].seen_side = 2;
+    contact_set_pair(&set);
+    assert_int_equal(set.count, 2);
+    contact_set_clear(&set);
+}
+
 WITH_LABELS(test_highlight_and_shadow_are_one_contact)
 {
 #define H "a.npy,highlight,"
@@ -564,6 +608,7 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
         snprintf(text, sizeof text, "image,class,row,column,rows,columns\n%s", cases[i].rows);
         put("l.csv", text);
         expect_contacts("l.csv", LABELLED_BOTH, cases[i].expected, cases[i].count);
+        expect_mirrored("l.csv", cases[i].expected, cases[i].count);
     }
     put("l.csv", "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\n" S "4,13,6,9\n");
     expect_contacts("l.csv", LABELLED_HIGHLIGHT, cases[0].expected, 1);
