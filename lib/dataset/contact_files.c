@@ -173,7 +173,11 @@ sonject_status contact_reader_add(struct contact_reader *reader, const char *pla
     CHECK_MEMORY(reader->report, contacts, "contacts");
     set->contacts = contacts;
     struct labelled_contact *contact = &contacts[set->count++];
-    *contact = (struct labelled_contact){.image = image->number, .part = part, .side = image->side};
+    *contact = (struct labelled_contact){.image = image->number,
+                                         .part = part,
+                                         .side = image->side,
+                                         .image_rows = image->rows,
+                                         .image_columns = image->columns};
     take_pixels(box->row, box->rows, image->rows, &contact->box.first_row, &contact->box.rows);
     take_pixels(box->column, box->columns, image->columns, &contact->box.first_column,
                 &contact->box.columns);

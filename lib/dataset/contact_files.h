@@ -20,6 +20,7 @@ struct labelled_contact {
     uint32_t part;  /* enum labelled_part that the box is around */
     uint32_t side;  /* enum recorded_side of a recording; 0: not given */
     sonject_box box;
+    uint64_t image_rows, image_columns; /* size of the image as its labels tell it; 0: not told */
     uint32_t seen_side; /* side that the image shows there; 0: unknown, or the image shows one */
     bool is_reversed;   /* range grows to the left there */
 };

@@ -193,6 +193,22 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     return status;
 }
 
+/* Refuses labels of a picture of another size, whose boxes lie elsewhere in the image. */
+static sonject_status check_size(struct report *report, const char *image,
+                                 const struct labelled_contact *contact,
+                                 const struct raster_layout *layout)
+{
+    if ((contact->image_rows == 0 || contact->image_rows == layout->rows) &&
+        (contact->image_columns == 0 || contact->image_columns == layout->columns))
+        return SONJECT_OK;
+    return input_failure(report, image,
+                         "the labels say %llu x %llu pixels, the image has %llu x %llu: label this "
+                         "image, or scale boxes and size to it",
+                         (unsigned long long)contact->image_columns,
+                         (unsigned long long)contact->image_rows,
+                         (unsigned long long)layout->columns, (unsigned long long)layout->rows);
+}
+
 sonject_status contact_set_place(struct sonject_campaign *campaign, struct contact_set *set)
 {
     struct image_facts facts;
@@ -201,6 +217,7 @@ sonject_status contact_set_place(struct sonject_campaign *campaign, struct conta
         const struct labelled_contact *before = i > 0 ? contact - 1 : NULL;
         if (!before || before->image != contact->image || before->side != contact->side)
             CHECK(describe_image(campaign, set->images[contact->image], contact->side, &facts));
+        CHECK(check_size(campaign->report, set->images[contact->image], contact, &facts.layout));
         contact->seen_side =
             contact->side ? contact->side : side_of_label(&contact->box, facts.nadir_column);
         contact->is_reversed = facts.nadir_column > 0.0 && contact->seen_side == RECORDED_PORT;

@@ -6,7 +6,7 @@ import re
 import numpy
 import pytest
 
-from conftest import page_data
+from conftest import assert_refused, page_data
 from made_swaths import COLUMNS, ROWS, Made
 from test_init import init
 import fitting
@@ -79,6 +79,22 @@ def test_what_cannot_be_fitted_is_told(sonject, folder, contacts, output, messag
     done = sonject("fit", "start.yaml", "contacts.csv", "-o", output.format(here=folder.name))
     assert done.returncode == 3 and message in done.stderr
     assert sorted(path.name for path in folder.iterdir()) == before
+
+
+@pytest.mark.parametrize("columns, rows", [(250, 150), (500, 150), (1000, 300)])
+def test_labels_of_a_picture_of_another_size_are_refused(sonject, folder, columns, rows):
+    message = f"seabed_1.tif: the labels say {columns} x {rows} pixels, the image has 500 x 300: "
+    box = {"image_id": 1, "category_id": 1, "bbox": [5, 5, 20, 9]}
+    (folder / "coco.json").write_text(json.dumps({
+        "images": [{"id": 1, "file_name": "seabed_1.tif", "width": columns, "height": rows}],
+        "categories": [{"id": 1, "name": "mine"}], "annotations": 12 * [box]}))
+    (folder / "voc").mkdir()
+    (folder / "voc" / "1.xml").write_text(
+        f"<annotation><filename>seabed_1.tif</filename><size><width>{columns}</width><height>{rows}</height></size>"
+        + 12 * ("<object><name>mine</name><bndbox><xmin>6</xmin><ymin>6</ymin><xmax>25</xmax><ymax>14</ymax></bndbox>"
+                "</object>") + "</annotation>")
+    for labels in ("coco.json", "voc"):
+        assert_refused(sonject("fit", "start.yaml", labels, "-o", "fitted.yaml", "--quiet"), 3, message)
 
 
 def test_contacts_of_a_class_are_fitted(sonject, folder):
