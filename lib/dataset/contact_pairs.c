@@ -107,13 +107,29 @@ static void pair_parts(struct labelled_contact *contacts, size_t count)
     }
 }
 
-void contact_set_pair(struct contact_set *set)
+/* Keeps one of equal labels, which lie beside each other. */
+static void leave_out_repeated(struct report *report, struct contact_set *set)
+{
+    struct labelled_contact *contacts = set->contacts;
+    const size_t count = set->count;
+    size_t kept = 1;
+    for (size_t i = 1; i < count; i++)
+        if (compare_contacts(&contacts[i], &contacts[kept - 1]) != 0)
+            contacts[kept++] = contacts[i];
+    set->count = kept;
+    if (kept < count)
+        report_note(report, "%zu of %zu labels repeat another one, box and part, and are left out",
+                    count - kept, count);
+}
+
+void contact_set_pair(struct report *report, struct contact_set *set)
 {
     struct labelled_contact *contacts = set->contacts;
     size_t kept = 0;
     if (set->count == 0)
         return;
     qsort(contacts, set->count, sizeof *contacts, compare_contacts);
+    leave_out_repeated(report, set);
     for (size_t start = 0, end; start < set->count; start = end) {
         for (end = start; end < set->count && contacts[end].image == contacts[start].image &&
                           contacts[end].side == contacts[start].side &&

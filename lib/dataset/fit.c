@@ -187,7 +187,7 @@ static sonject_status read_all(struct fit *fit, const sonject_campaign_fit_param
     fit->campaign->folder = fit->folder;
     CHECK(contact_set_read(fit->report, params->contacts, &fit->choice, &fit->set));
     CHECK(contact_set_place(fit->campaign, &fit->set));
-    contact_set_pair(&fit->set);
+    contact_set_pair(fit->report, &fit->set);
     if (fit->set.quantiles.count > 0)
         take_quantiles(fit);
     else if (fit->set.count < CONTACTS_LEAST)

@@ -61,8 +61,10 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
 @pytest.mark.parametrize("contacts, output, message", [
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "fitted.yaml",
      "contacts.csv: has 1 contacts; a fit needs 10 or more"),
-    ("image,row,column,rows,columns\n" + "seabed_1.tif,295,5,9,20\n" * 10, "fitted.yaml",
+    ("image,row,column,rows,columns\n" + "".join(f"seabed_1.tif,295,{column},9,20\n" for column in range(10)), "fitted.yaml",
      "seabed_1.tif: "),
+    ("image,row,column,rows,columns\n" + "seabed_1.tif,5,5,9,20\n" * 10, "fitted.yaml",
+     "contacts.csv: has 1 contacts; a fit needs 10 or more"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "start.yaml",
      "start.yaml: is the campaign that is fitted; choose another name"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/start.yaml",

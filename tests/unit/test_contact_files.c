@@ -44,7 +44,7 @@ static void expect_contacts(const char *name, uint32_t part, const struct expect
     struct contact_set set;
     EXPECT_OK(&report, read_set(name, part, &set));
     assert_string_equal(report.message, "");
-    contact_set_pair(&set);
+    contact_set_pair(&report, &set);
     assert_int_equal(set.count, count);
     assert_int_equal(set.quantiles.count, 0);
     for (size_t i = 0; i < count; i++) {
@@ -499,6 +499,18 @@ WITH_LABELS(test_own_labels_are_read_as_they_were_written)
     class_names_clear(&classes);
 }
 
+/* ---- Notes. */
+
+/* The line that was noted last. */
+static char noted[400];
+
+static void keep_note(void *user, uint32_t level, const char *line)
+{
+    (void)user;
+    (void)level;
+    snprintf(noted, sizeof noted, "%s", line);
+}
+
 /* ---- Highlights and shadows. */
 
 #define MIRROR 1000
@@ -513,7 +525,7 @@ static void expect_mirrored(const char *name, const struct expected *expected, s
         box->first_column = MIRROR - box->first_column - box->columns;
         set.contacts[i].is_reversed = true;
     }
-    contact_set_pair(&set);
+    contact_set_pair(&report, &set);
     assert_int_equal(set.count, count);
     for (size_t i = 0; i < count; i++) {
         size_t found = 0;
@@ -529,6 +541,27 @@ static void expect_mirrored(const char *name, const struct expected *expected, s
     contact_set_clear(&set);
 }
 
+/* Labels of one box and part are one contact, whatever their classes; other parts are others. */
+WITH_LABELS(test_a_label_that_is_given_again_counts_once)
+{
+    struct contact_set set;
+    const struct report_host no_user = {0};
+    put_image("a.npy");
+    put_image("b.npy");
+    put("l.csv", "image,class,row,column,rows,columns\na.npy,mine,5,10,4,3\na.npy,rock,5,10,4,3\n"
+                 "b.npy,mine,5,10,4,3\na.npy,mine,5,10,4,3\na.npy,a shadow,5,10,4,3\n");
+    EXPECT_OK(&report, read_set("l.csv", LABELLED_BOTH, &set));
+    assert_int_equal(set.count, 5);
+    report.log = keep_note;
+    report.host = &no_user;
+    contact_set_pair(&report, &set);
+    report.log = NULL;
+    report.host = NULL;
+    assert_int_equal(set.count, 3);
+    assert_string_equal(noted, "2 of 5 labels repeat another one, box and part, and are left out");
+    contact_set_clear(&set);
+}
+
 /* Parts of two sides of an image are no contact, though they lie side by side. */
 WITH_LABELS(test_parts_of_two_sides_are_two_contacts)
 {
@@ -539,7 +572,7 @@ WITH_LABELS(test_parts_of_two_sides_are_two_contacts)
     EXPECT_OK(&report, read_set("l.csv", LABELLED_BOTH, &set));
     set.contacts[0].seen_side = 1;
     set.contacts[1].seen_side = 2;
-    contact_set_pair(&set);
+    contact_set_pair(&report, &set);
     assert_int_equal(set.count, 2);
     contact_set_clear(&set);
 }
@@ -615,16 +648,6 @@ WITH_LABELS(test_highlight_and_shadow_are_one_contact)
 }
 
 /* ---- Chosen classes. */
-
-/* The line that was noted last. */
-static char noted[400];
-
-static void keep_note(void *user, uint32_t level, const char *line)
-{
-    (void)user;
-    (void)level;
-    snprintf(noted, sizeof noted, "%s", line);
-}
 
 /* Each format gives the mine's label alone, though the boulder's image is not there. */
 WITH_LABELS(test_labels_of_chosen_classes_are_read)
