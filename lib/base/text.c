@@ -123,6 +123,21 @@ const char *text_of_number(char *text, size_t capacity, double number, int digit
     return text;
 }
 
+void text_use_points(char *text)
+{
+    char half[24];
+    char *to = text;
+    snprintf(half, sizeof half, "%.1f", 0.5); /* '0', the separator, '5' */
+    const size_t length = strlen(half) - 2;
+    for (const char *from = text; *from; to++) {
+        const bool is_separator = from > text && is_digit(from[-1]) &&
+                                  strncmp(from, half + 1, length) == 0 && is_digit(from[length]);
+        *to = is_separator ? '.' : *from;
+        from += is_separator ? length : 1;
+    }
+    *to = 0;
+}
+
 bool text_to_count(const char *text, uint64_t *count)
 {
     uint64_t value = 0;

@@ -22,6 +22,10 @@ bool text_to_count(const char *text, uint64_t *count);
  * capacity: at least digits + 10. Returns text. */
 const char *text_of_number(char *text, size_t capacity, double number, int digits);
 
+/* Puts '.' wherever the locale's decimal separator lies between two digits, for messages that are
+ * kept in files. */
+void text_use_points(char *text);
+
 /* Returns whether text contains needle (may be empty), whatever the case of letters. */
 bool contains_ignoring_case(const char *text, const char *needle);
 

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "dataset/data_set.h"
 #include "dataset/run.h"
 #include "image/raster.h"
@@ -128,11 +129,14 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* Keeps the first line of the first reason, and clears the message, since the call goes on. */
+/* Keeps the first line of the first reason, which goes into the record, and clears the message,
+ * since the call goes on. */
 static void keep_reason(struct report *report, const char *why, char reason[REASON_CAPACITY])
 {
-    if (!*reason)
+    if (!*reason) {
         snprintf(reason, REASON_CAPACITY, "%.*s", (int)strcspn(why, "\n"), why);
+        text_use_points(reason);
+    }
     report->message[0] = '\0';
 }
 

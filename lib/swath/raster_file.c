@@ -52,7 +52,10 @@ struct raster_attribute raster_make_grey(struct report *report, struct raster_la
                     white > black ? "white" : "black", ends_db[0], ends_db[1], full_scale);
     layout->channels = 1;
     layout->type = PIXEL_UINT8;
-    snprintf(text, GREY_TEXT, "%g dB, %g dB", ends_db[0], ends_db[1]);
+    char ends[2][24];
+    snprintf(text, GREY_TEXT, "%s dB, %s dB",
+             text_of_number(ends[0], sizeof ends[0], ends_db[0], 6),
+             text_of_number(ends[1], sizeof ends[1], ends_db[1], 6));
     return (struct raster_attribute){GREY_ATTRIBUTE, text};
 }
 

@@ -1,5 +1,6 @@
 """Campaigns in memory and as files."""
 
+import locale
 import pickle
 
 import numpy
@@ -111,6 +112,24 @@ def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
         made = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 3, "empty": 0, **settings}, context=context)
         assert made.run(tmp_path / f"faint{number}")
         assert context._library.sonject_context_message(context._pointer) == b""
+
+
+def test_a_data_set_is_the_same_in_a_host_with_a_decimal_comma(campaign, tmp_path):
+    """Records keep why targets were drawn again, and images their grey levels."""
+    settings = {"images": 3, "empty": 0, "visible": {"highlight": "90 dB"}, "grey": ["-50.5 dB", "6.5 dB"]}
+    for name in ("C", "de_DE.UTF-8"):
+        try:
+            locale.setlocale(locale.LC_ALL, name)
+        except locale.Error:
+            pytest.skip("no locale with a decimal comma is installed")
+        try:
+            sonject.Campaign(tmp_path / "campaign.yaml", settings).run(tmp_path / name)
+        finally:
+            locale.setlocale(locale.LC_ALL, "C")
+    files = [path.relative_to(tmp_path / name) for path in (tmp_path / name).rglob("*.*") if path.name != "times.json"]
+    assert "highlight" in (tmp_path / "C" / "all" / "records" / "00000000.json").read_text().split("because")[1]
+    for path in files:
+        assert (tmp_path / name / path).read_bytes() == (tmp_path / "C" / path).read_bytes(), path
 
 
 def test_a_data_set_is_made_once(campaign, tmp_path):
