@@ -14,6 +14,7 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXTS, false, offsetof(struct scene_arguments, overrides)},
 };
 
+/* A byte order mark may be before the first key. */
 static bool is_campaign(const char *path)
 {
     char line[256];
@@ -21,7 +22,7 @@ static bool is_campaign(const char *path)
     uint64_t bytes;
     FILE *file = byte_file_open(path, &bytes);            /* NULL for a pipe */
     while (file && !is && fgets(line, sizeof line, file)) /* a line of YAML or JSON */
-        is = strncmp(line + strspn(line, " {\""), "sonject_campaign", 16) == 0;
+        is = strncmp(line + strspn(line, "\xEF\xBB\xBF {\""), "sonject_campaign", 16) == 0;
     if (file)
         fclose(file);
     return is;

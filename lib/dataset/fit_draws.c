@@ -504,7 +504,7 @@ sonject_status fit_draws_text(const struct fit_draws *draws, struct report *repo
 {
     struct splice_list list = {NULL, 0};
     struct growing_text made = {NULL, 0, 0, false};
-    size_t at = 0;
+    size_t at = strncmp(draws->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* no byte order mark */
     const sonject_status status = make_splices(&list, draws, report, selection);
     growing_text_add(&made, "%s", comment);
     for (size_t i = 0; status == SONJECT_OK && i < list.count; i++) {

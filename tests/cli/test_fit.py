@@ -132,6 +132,17 @@ def test_bright_points_tell_no_heights(sonject, folder):
     assert page["unmatched"] and all(note in done.stderr for note in notes)
 
 
+def test_a_byte_order_mark_is_not_in_the_fitted_file(sonject, folder):
+    """The comment goes before the first key, and a mark may only begin a file."""
+    contacts = "".join(f"seabed_1.tif,{20 + 9 * i},5,9,20\n" for i in range(12))
+    (folder / "contacts.csv").write_text("image,row,column,rows,columns\n" + contacts)
+    (folder / "start.yaml").write_text((folder / "start.yaml").read_text(), encoding="utf-8-sig")
+    sonject.done("check", "start.yaml")
+    sonject.done("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--quiet")
+    assert b"\xef\xbb\xbf" not in (folder / "fitted.yaml").read_bytes()
+    sonject.done("check", "fitted.yaml")
+
+
 SIDES = """\
 sonject: 1
 input: {path: line.tif, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, nadir_column: 599.5, side: port}}
