@@ -110,6 +110,7 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     (*scene)->is_read = true;
     scene_init(&(*scene)->scene);
     status = campaign_draw_scene(campaign, id, &attempts, reason, &plan, &(*scene)->scene);
+    THEN(status, campaign_check_unchanged(campaign, plan.swath));
     image_plan_clear(&plan);
     if (status != SONJECT_OK)
         sonject_scene_release(scene);

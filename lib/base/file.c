@@ -188,6 +188,7 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
     uint64_t size = 0;
     *bytes = NULL;
     *count = 0;
+    CHECK(file_note_read(report, path));
     FILE *file = byte_file_open(path, &size);
     if (!file)
         return errno == ESPIPE
@@ -265,6 +266,39 @@ sonject_status file_identify(struct report *report, const char *path, struct pat
     if (facts->kind == PATH_IS_FOLDER)
         return file_failure(report, path, "read", EISDIR);
     return facts->kind == PATH_IS_FILE ? SONJECT_OK : refuse_endless(report, path);
+}
+
+sonject_status file_note_read(struct report *report, const char *path)
+{
+    struct read_files *reads = report->reads;
+    struct path_facts facts;
+    if (!reads || path_facts_read(path, &facts) != 0)
+        return SONJECT_OK;
+    for (size_t i = 0; i < reads->count; i++)
+        if (strcmp(reads->files[i].path, path) == 0)
+            return SONJECT_OK;
+    struct read_file *files = grow_doubling(reads->files, reads->count, sizeof *files);
+    CHECK_MEMORY(report, files, path);
+    reads->files = files;
+    files[reads->count] = (struct read_file){copy_text(path), facts};
+    CHECK_MEMORY(report, files[reads->count].path, path);
+    reads->count++;
+    return SONJECT_OK;
+}
+
+void read_files_clear(struct read_files *reads)
+{
+    for (size_t i = 0; i < reads->count; i++)
+        free(reads->files[i].path);
+    free(reads->files);
+    memset(reads, 0, sizeof *reads);
+}
+
+bool file_is_unchanged(const char *path, const struct path_facts *facts)
+{
+    struct path_facts now;
+    return path_facts_read(path, &now) == 0 && now.bytes == facts->bytes &&
+           now.changed_s == facts->changed_s && now.changed_ns == facts->changed_ns;
 }
 
 bool paths_are_same(const char *a, const char *b)

@@ -99,6 +99,22 @@ void folder_names_clear(struct folder_names *list);
  * name. NULL if out of memory. */
 char *path_join(const char *folder, const char *name);
 
+/* Files as they were when they were read. Starts as zeros; ends with read_files_clear. */
+struct read_files {
+    struct read_file {
+        char *path;
+        struct path_facts facts;
+    } * files; /* each path once */
+    size_t count;
+};
+
+/* Notes a file that is about to be read, if report->reads wants it. Errors: MEMORY. */
+sonject_status file_note_read(struct report *report, const char *path);
+void read_files_clear(struct read_files *reads);
+
+/* Returns whether the file still has the size and the time of change. */
+bool file_is_unchanged(const char *path, const struct path_facts *facts);
+
 #define PATH_CAPACITY 4096 /* the system opens no longer path */
 
 /* Writes the path of a formatted name as path_join does. Errors: STORAGE (too long). */

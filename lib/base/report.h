@@ -23,6 +23,7 @@
 #define INPUTS_KEPT     64 /* images that a call remembers to have read */
 
 struct decoder;
+struct read_files;
 
 /* Data that a context lends to all its calls. */
 struct report_host {
@@ -44,6 +45,7 @@ struct report {
         uint64_t device, number;
     } inputs[INPUTS_KEPT];
     size_t input_count;
+    struct read_files *reads; /* gets the files that a call reads (file_note_read); NULL: none */
 };
 
 #if defined(__GNUC__)

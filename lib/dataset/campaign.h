@@ -9,6 +9,7 @@
 
 #include <sonject/campaign.h>
 
+#include "base/file.h"
 #include "base/hash.h"
 #include "dataset/labels.h"
 #include "image/raster.h"
@@ -416,10 +417,12 @@ struct sonject_campaign {
     char *scene_text; /* text of the base scene's file; owned */
     size_t scene_bytes;
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* hashes of the swaths' files; owned */
-    json_t *inputs;                           /* all that images depend on, by name; owned */
-    char hash[HASH_TEXT_CAPACITY];            /* hash of inputs */
-    struct class_names classes; /* classes of all items, so that images number them alike */
-    const char *folder;         /* a run's folder, for calibrations; NULL: no run is under way */
+    struct path_facts *swath_facts;           /* the swaths' files when they were hashed; owned */
+    struct read_files reads;       /* other files that scenes name, which each image reads again */
+    json_t *inputs;                /* all that images depend on, by name; owned */
+    char hash[HASH_TEXT_CAPACITY]; /* hash of inputs */
+    struct class_names classes;    /* classes of all items, so that images number them alike */
+    const char *folder;            /* a run's folder, for calibrations; NULL: no run is under way */
     char **calibrations; /* calibration file of each swath that asks for one; owned; NULL: none */
     pthread_mutex_t *calibrating; /* held by the thread that calibrates; NULL: only one thread */
     struct swath_store store;
@@ -468,6 +471,10 @@ sonject_status campaign_draw_scene(struct sonject_campaign *campaign, uint64_t i
 sonject_status campaign_draw_swath(struct sonject_campaign *campaign, uint32_t number,
                                    const char *picture);
 
+/* Checks that a swath and all files that scenes name are as they were when the campaign was read
+ * and hashed. Errors: INPUT. */
+sonject_status campaign_check_unchanged(const struct sonject_campaign *campaign, uint32_t swath);
+
 /* Checks that the campaign has an image of that id. Errors: ARGUMENT. */
 sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);
 
@@ -484,7 +491,8 @@ struct campaign_image {
 
 /* Plans the image, reads its scene and its part of the swath, and injects. Draws again, up to
  * ATTEMPTS_MAX times, where values do not fit each other, objects do not fit, or targets are not
- * visible enough. Errors: those of sonject_campaign_inject; the message names the image. */
+ * visible enough. Refuses files that were changed since the campaign was read. Errors: those of
+ * sonject_campaign_inject; the message names the image. */
 sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
                                    uint64_t id, sonject_progress_function progress, void *user,
                                    struct campaign_image *image);

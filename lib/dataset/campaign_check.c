@@ -89,7 +89,8 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     struct trial trial;
     struct swath_file *file = NULL;
     sonject_status status =
-        file_hash(campaign->report, swath->path, campaign->swath_hashes[number]);
+        file_identify(campaign->report, swath->path, &campaign->swath_facts[number]);
+    THEN(status, file_hash(campaign->report, swath->path, campaign->swath_hashes[number]));
     if (status == SONJECT_ERROR_MEMORY)
         return status;
     if (status != SONJECT_OK)
@@ -283,6 +284,25 @@ static sonject_status check_all(struct sonject_campaign *campaign)
     return status;
 }
 
+static sonject_status check_file(struct report *report, const char *path,
+                                 const struct path_facts *facts)
+{
+    return file_is_unchanged(path, facts)
+               ? SONJECT_OK
+               : input_failure(report, path,
+                               "was changed since the campaign was read: read it again (start "
+                               "anew)");
+}
+
+sonject_status campaign_check_unchanged(const struct sonject_campaign *campaign, uint32_t swath)
+{
+    const struct read_files *reads = &campaign->reads;
+    for (size_t i = 0; i < reads->count; i++)
+        CHECK(check_file(campaign->report, reads->files[i].path, &reads->files[i].facts));
+    return check_file(campaign->report, campaign->campaign.swaths[swath].path,
+                      &campaign->swath_facts[swath]);
+}
+
 sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id)
 {
     if (id < campaign->campaign.images)
@@ -319,7 +339,12 @@ static sonject_status fill(struct sonject_campaign *campaign, const struct campa
     CHECK(take_classes(campaign));
     campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
     CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
-    return check_all(campaign);
+    campaign->swath_facts = allocate_array(plan->swath_count, sizeof *campaign->swath_facts);
+    CHECK_MEMORY(campaign->report, campaign->swath_facts, "the campaign");
+    campaign->report->reads = &campaign->reads; /* file and tables of the campaign are kept */
+    const sonject_status status = check_all(campaign);
+    campaign->report->reads = NULL;
+    return status;
 }
 
 sonject_status campaign_open(struct report *report, const struct campaign_source *source,
@@ -346,6 +371,8 @@ void campaign_close(struct sonject_campaign **campaign)
     json_decref((*campaign)->inputs);
     free((*campaign)->scene_text);
     free((*campaign)->swath_hashes);
+    free((*campaign)->swath_facts);
+    read_files_clear(&(*campaign)->reads);
     free(*campaign);
     *campaign = NULL;
 }

@@ -21,10 +21,17 @@ void campaign_image_clear(struct campaign_image *image)
     image_plan_clear(&image->plan);
 }
 
-/* Puts the image's number before the message of a failure. */
-static sonject_status name_image(struct report *report, uint64_t id, sonject_status status)
+/* Refuses an image whose files were changed meanwhile, which may also be why it failed. Puts the
+ * image's number before the message of a failure. */
+static sonject_status end_image(struct sonject_campaign *campaign,
+                                const struct campaign_image *image, uint64_t id,
+                                sonject_status status)
 {
+    struct report *report = campaign->report;
     char message[REPORT_CAPACITY];
+    if ((status == SONJECT_OK || status == SONJECT_ERROR_INPUT) &&
+        campaign_check_unchanged(campaign, image->plan.swath) != SONJECT_OK)
+        status = SONJECT_ERROR_INPUT;
     if (status == SONJECT_OK || status == SONJECT_CANCELLED)
         return status;
     memcpy(message, report->message, sizeof message);
@@ -308,7 +315,7 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
         if (!is_drawn || given_up + 1 >= ATTEMPTS_MAX) {
             image->attempts = given_up;
             strcpy(image->reason, reason);
-            return name_image(campaign->report, id, status);
+            return end_image(campaign, image, id, status);
         }
         redrawn += next.of_all == attempts.of_all;
         attempts = next;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "schema/keys.h"
 
@@ -71,7 +72,8 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
     }
 static const struct field mesh_fields[] = {
     {"file", "mesh file of triangles: STL, OBJ or PLY", .kind = FIELD_FILE, MEMBER(path), REQUIRED},
-    {"unit", "length of one unit of the mesh file's numbers, such as cm or 2.54 cm; by default m", LENGTH_UNIT(unit_m)},
+    {"unit", "length of one unit of the mesh file's numbers, such as cm or 2.54 cm; by default m",
+     LENGTH_UNIT(unit_m)},
     {"nose", "axis of the mesh file that points along the object's nose", WORD(nose) = AXIS_WORDS},
     {"up", "axis of the mesh file that points up when level", WORD(up) = AXIS_WORDS,
      .preset = AXIS_Z},
@@ -111,6 +113,7 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
     options.unit_m = mesh->unit_m > 0.0 ? mesh->unit_m : 1.0;
     options.smooth_angle_rad = mesh->smooth_angle_rad;
     turn_file_axes(mesh, options.axes);
+    CHECK(file_note_read(reader->report, mesh->path));
     const sonject_status status =
         scene_share_mesh(reader->scene, &report, mesh->path, &options, mesh->allows_open, number);
     if (status == SONJECT_OK)

@@ -180,6 +180,7 @@ static sonject_status load_heights(struct reader *reader, struct report *report,
     const struct number_array *array = find_array(reader, text->path);
     if (array)
         return take_heights(reader->scene, report, text, array, NULL);
+    CHECK(file_note_read(reader->report, text->path));
     CHECK(swath_file_open_array(report, text->path, SONJECT_CHANNEL_ONLY, text->array, &file));
     const sonject_status status = take_heights(reader->scene, report, text, NULL, file);
     swath_file_close(&file);

@@ -1,6 +1,7 @@
 """Campaigns in memory and as files."""
 
 import locale
+import os
 import pickle
 
 import numpy
@@ -130,6 +131,33 @@ def test_a_data_set_is_the_same_in_a_host_with_a_decimal_comma(campaign, tmp_pat
     assert "highlight" in (tmp_path / "C" / "all" / "records" / "00000000.json").read_text().split("because")[1]
     for path in files:
         assert (tmp_path / name / path).read_bytes() == (tmp_path / "C" / path).read_bytes(), path
+
+
+@pytest.mark.parametrize("name", ["swath.npy", "target.yaml", "rock.obj", "pings.csv", "heights.npy"])
+def test_files_that_were_changed_since_the_campaign_was_read_are_refused(campaign_folder, monkeypatch, name):
+    """A change back is a change, too, since nobody knows what was read between."""
+    monkeypatch.chdir(campaign_folder)
+    (campaign_folder / "target.yaml").write_text("sonject_target: 1\nparts: [{name: rock, shape: mesh, mesh: {file: rock.obj}}]\n")
+    (campaign_folder / "rock.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    (campaign_folder / "pings.csv").write_text("row,altitude_m\n0,10\n89,10\n")
+    numpy.save("heights.npy", numpy.zeros((20, 20), numpy.float32))
+    (campaign_folder / "scene.yaml").write_text(CAMPAIGN_SCENE + (
+        "seabed: {relief: [{heights: {file: heights.npy, unit: m, row_spacing: 1, column_spacing: 1, first_ground_range: 18}}]}\n"))
+    settings = {"targets": [{"class": "rock", "object": {"target": "target.yaml"}}], "draw": {},
+                "swaths": [{"path": "swath.npy", "set": {"input.pings": "pings.csv", "sonar.altitude": "from_file"}}]}
+    whole = sonject.Campaign(campaign_folder / "campaign.yaml", {**settings, "empty": 0})
+    assert whole[0].image.any() and whole.scene(0).object_count == 1
+    os.utime(campaign_folder / "campaign.yaml", ns=(1, 1))  # what was kept may change
+    os.utime(campaign_folder / "scene.yaml", ns=(1, 1))
+    assert whole[1].image.any()
+    os.utime(campaign_folder / name, ns=(1, 1))
+    message = f"{name}: was changed since the campaign was read"
+    for work in (lambda: whole[2], lambda: whole.run(campaign_folder / "set"), lambda: whole.scene(3)):
+        with pytest.raises(sonject.SonjectError, match=message):
+            work()
+    assert not [path for path in (campaign_folder / "set").rglob("*0000*")]
+    again = sonject.Campaign(campaign_folder / "campaign.yaml", {**settings, "empty": 0})
+    assert again.run(campaign_folder / "set")
 
 
 def test_a_data_set_is_made_once(campaign, tmp_path):
