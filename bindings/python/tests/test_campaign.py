@@ -240,8 +240,8 @@ def test_a_fit_makes_the_calibrations_that_its_scene_asks_for(tmp_path, campaign
     for name in ("swath.npy", "other.npy"):
         numpy.save(tmp_path / name, numbers.rayleigh(20, (300, 300)).astype(numpy.uint8))
     (tmp_path / "scene.yaml").write_text(CAMPAIGN_SCENE.replace("input:\n", "input:\n  calibration: auto\n"))
-    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "swath.npy,50,50,9,20\n" * 9
-                                           + "other.npy,50,50,9,20\n")
+    (tmp_path / "contacts.csv").write_text("image,row,column,rows,columns\n" + "other.npy,50,50,9,20\n"
+                                           + "".join(f"swath.npy,{row},50,9,20\n" for row in range(50, 59)))
     with pytest.raises(sonject.SonjectError) as told:
         sonject.fit_campaign(tmp_path / "campaign.yaml", tmp_path / "contacts.csv", tmp_path / "fitted.yaml",
                              progress=lambda fraction, stage: fraction > 0.005)
