@@ -114,7 +114,8 @@ const struct verb run_verb = {
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
         "A folder that already holds the finished result of the same inputs is left as it is; one\n"
-        "with another result is refused unless --overwrite is given.\n"
+        "with another result, or with other files of its names, is refused unless --overwrite is\n"
+        "given.\n"
         "Each band of a scene goes to a folder of its name; --set band=NAME runs only that band.\n"
         "A run that was stopped continues from DIR/work. Shards of a run need the same DIR and\n"
         "scene; they may run on different machines, at any time, and be repeated.",

@@ -25,8 +25,9 @@ typedef struct sonject_run_params {
     uint32_t shard_count; /* at most 9999; 0: the run is not shared out */
     double exit_after_s;  /* time after which the call stops tracing by itself; 0: never */
     double checkpoint_s;  /* longest time between checkpoints; 0: 60 s */
-    uint32_t overwrites;  /* 1: another result in the folder is replaced; 0: it is refused */
-    uint32_t reserved;    /* 0 */
+    uint32_t
+        overwrites; /* 1: another result, or other files, in the folder are replaced; 0: refused */
+    uint32_t reserved; /* 0 */
 } sonject_run_params;
 
 /* Reads the scene's input, injects, and writes the result files into params->folder. run.json is
@@ -35,6 +36,7 @@ typedef struct sonject_run_params {
  * finished result of the same inputs. Files are compared by size, and also by hash if they have
  * less than 16 MB or another time. Missing or changed files are made again. A result of other
  * inputs is refused unless params->overwrites, and stays until the new one is ready to be written.
+ * The same holds for files of the result's names that no run has written.
  * Each file appears whole or not at all.
  * Shards: with shard_count K this call traces one of K parts of all rays. It leaves its tallies in
  * params->folder/work and writes no results. Other processes, also on other machines of the same

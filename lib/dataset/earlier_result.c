@@ -6,6 +6,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/run.h"
+#include "inject/checkpoints.h"
 
 #define DIFFERENCES_NAMED 4
 
@@ -103,6 +104,35 @@ static sonject_status check_inputs(struct report *report, const struct earlier_r
                         request->inputs, holds ? NULL : path, request->overwrites, is_same);
 }
 
+/* Returns whether a result was begun in the folder, whose files lie there without its document. */
+static bool has_work(const char *folder)
+{
+    char *work = checkpoints_folder(folder);
+    const bool has = work && file_exists(work);
+    free(work);
+    return has;
+}
+
+/* Refuses a folder with another's file where the call would write its own. The document is looked
+ * for again, since a process that writes the same result may have ended meanwhile. */
+static sonject_status check_others(struct report *report, const struct earlier_request *request)
+{
+    if (request->overwrites || has_work(request->folder))
+        return SONJECT_OK;
+    char path[PATH_CAPACITY];
+    for (size_t i = 0; request->names[i]; i++) {
+        CHECK(path_in(report, path, request->folder, "%s", request->names[i]));
+        CHECK(file_check_replaced(report, path));
+        if (file_exists(path) && !has_document(request->folder, request->document))
+            return report_failure(
+                report, SONJECT_ERROR_ARGUMENT,
+                "%s: holds the file %s, but no %s that tells of it: choose another "
+                "folder, or replace that file (--overwrite)",
+                request->folder, request->names[i], request->document);
+    }
+    return SONJECT_OK;
+}
+
 sonject_status earlier_check(struct report *report, const struct earlier_request *request,
                              bool *is_finished)
 {
@@ -110,7 +140,7 @@ sonject_status earlier_check(struct report *report, const struct earlier_request
     bool is_same = false;
     *is_finished = false;
     if (!has_document(request->folder, request->document))
-        return SONJECT_OK;
+        return check_others(report, request);
     json_t *document;
     sonject_status status = earlier_document(report, request->folder, request->document, &document);
     THEN(status, check_inputs(report, request, document, &is_same));
@@ -158,11 +188,19 @@ json_t *earlier_withdraw(const char *folder, const char *document)
     if (path_in(&ignored, path, folder, "%s", document) == SONJECT_OK)
         file_discard(path);
     json_decref(earlier);
+    char *work = checkpoints_folder(folder);
+    if (work)
+        (void)folder_make_one(work);
+    free(work);
     return files;
 }
 
-void earlier_tidy(const char *folder, json_t *earlier, const json_t *files)
+void earlier_tidy(const char *folder, const char *document, json_t *earlier, const json_t *files)
 {
+    char *work = has_document(folder, document) ? checkpoints_folder(folder) : NULL;
+    if (work)
+        folder_discard(work);
+    free(work);
     file_list_discard(earlier, files, folder);
     folder_tidy(folder);
     json_decref(earlier);

@@ -114,7 +114,7 @@ static sonject_status write_files(struct report *report, const struct scene *sce
         status = json_document_write(report, document, 17, document_path);
     else
         json_decref(document);
-    earlier_tidy(folder, earlier, files);
+    earlier_tidy(folder, DOCUMENT, earlier, files);
     json_decref(files);
     return status;
 }
@@ -147,8 +147,10 @@ static sonject_status run_swath_elements(struct report *report, struct device_sl
     json_t *document = series_document(scene, &input, &layout);
     sonject_status status = find_inputs(report, scene, swath, document, &inputs);
     if (status == SONJECT_OK) {
+        static const char *const names[] = {SERIES_FILE, NULL};
         const struct earlier_request earlier = {.folder = params->folder,
                                                 .document = DOCUMENT,
+                                                .names = names,
                                                 .inputs = inputs,
                                                 .scene = scene,
                                                 .overwrites = params->overwrites != 0};

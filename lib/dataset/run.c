@@ -178,9 +178,9 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
                                       const char *folder, double run_start, double write_start)
 {
     char path[PATH_CAPACITY];
-    CHECK(path_in(report, path, folder, "truth.json"));
+    CHECK(path_in(report, path, folder, TRUTH_DOCUMENT));
     CHECK(write_truth(report, facts, path));
-    CHECK(file_list_add(&facts->files, report, folder, "truth.json", true));
+    CHECK(file_list_add(&facts->files, report, folder, TRUTH_DOCUMENT, true));
     CHECK(write_labels(report, facts, folder));
     CHECK(path_in(report, path, folder, REPORT_PAGE));
     CHECK(write_run_page(report, facts, path));
@@ -219,7 +219,7 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, calibration_files_list(report, facts->scene, folder, &facts->files));
     THEN(status, write_documents(report, facts, folder, run_start, start));
-    earlier_tidy(folder, earlier, facts->files);
+    earlier_tidy(folder, RUN_DOCUMENT, earlier, facts->files);
     json_decref(facts->files);
     json_decref(facts->page);
     facts->files = facts->page = NULL;
@@ -309,9 +309,16 @@ static sonject_status check_earlier(struct report *report, const struct run_requ
 {
     CHECK(scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs));
     json_add(&facts->inputs, "image", json_text(facts->image_name));
-    const struct earlier_request earlier = {
-        request->folder,        RUN_DOCUMENT,        facts->inputs,  request->scene,
-        request->label_formats, request->overwrites, request->merges};
+    const char *names[RUN_FILES + 2] = {facts->image_name};
+    run_file_names(names + 1);
+    const struct earlier_request earlier = {.folder = request->folder,
+                                            .document = RUN_DOCUMENT,
+                                            .names = names,
+                                            .inputs = facts->inputs,
+                                            .scene = request->scene,
+                                            .label_formats = request->label_formats,
+                                            .overwrites = request->overwrites,
+                                            .hashes_all = request->merges};
     return facts->inputs ? earlier_check(report, &earlier, is_finished)
                          : report_out_of_memory(report, "a run's inputs");
 }

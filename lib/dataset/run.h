@@ -81,8 +81,9 @@ struct run_facts {
     int jpeg_quality; /* JPEG quality of the image; 0: without loss */
 };
 
-#define REPORT_PAGE  "report.html"
-#define TRUTH_DIGITS 12
+#define TRUTH_DOCUMENT "truth.json"
+#define REPORT_PAGE    "report.html"
+#define TRUTH_DIGITS   12
 
 /* Returns the content of truth.json; NULL where memory is out. */
 json_t *truth_document(const struct run_facts *facts);
@@ -132,6 +133,11 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
 /* Writes coco.json, contacts.csv, and the files of facts->label_formats, and lists them in
  * facts->files. Removes label files of other formats of an earlier run. Errors: STORAGE, MEMORY. */
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
+
+/* Lists the files that a run writes or removes, but for its image. names: gets RUN_FILES and NULL.
+ */
+#define RUN_FILES 24
+void run_file_names(const char *names[RUN_FILES + 1]);
 
 /* Returns the formats (sum of sonject_labels) that a run.json names. */
 uint32_t labels_of_document(const json_t *run);
@@ -183,6 +189,7 @@ json_t *sources_document(const struct scene *scene, const sonject_statistics *st
 
 struct earlier_request {
     const char *folder, *document; /* the result's last document, such as RUN_DOCUMENT */
+    const char *const *names;      /* files that the call writes or removes; NULL ends the list */
     const json_t *inputs;          /* inputs of the call's result */
     const struct scene *scene;     /* scene of the call, whose input may be a file */
     uint32_t label_formats;        /* wanted formats */
@@ -191,8 +198,9 @@ struct earlier_request {
 };
 
 /* Finds whether the folder holds the call's result, with every file as it was written. A result
- * with a changed file, or without wanted labels, is to be made again. Errors: ARGUMENT (another
- * result; the message names the differences), STORAGE, MEMORY. */
+ * with a changed file, or without wanted labels, is to be made again. Files of these names that no
+ * result explains are refused. Errors: ARGUMENT (another result; the message names the differences;
+ * another's file), STORAGE, MEMORY. */
 sonject_status earlier_check(struct report *report, const struct earlier_request *request,
                              bool *is_finished);
 
@@ -208,12 +216,14 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
                                     uint32_t label_formats);
 
 /* Removes a result's document, so that the folder does not count as complete while another result
- * is written over it. Returns the list of the result's files, for earlier_tidy. Never fails. */
+ * is written over it, and makes the folder `work`, which tells its files from others'. Returns the
+ * list of the result's files, for earlier_tidy. Never fails. */
 json_t *earlier_withdraw(const char *folder, const char *document);
 
-/* Removes the files of an earlier result that are not among the new ones, and the remains of dead
- * processes. Releases the earlier list. Never fails. */
-void earlier_tidy(const char *folder, json_t *earlier, const json_t *files);
+/* Removes the files of an earlier result that are not among the new ones, the remains of dead
+ * processes and, where the document was written, an empty folder `work`. Releases the earlier list.
+ * Never fails. */
+void earlier_tidy(const char *folder, const char *document, json_t *earlier, const json_t *files);
 
 /* Adds the members that earlier_check reads to a document. Inputs and list of files are shared by
  * reference. Errors: STORAGE, MEMORY. */

@@ -230,22 +230,27 @@ static json_t *order_document(const struct injection_result *result, uint32_t or
     return JSON_OBJECT({"sum_m2", json_number(sum)}, {"brightest_m2", json_number(most)});
 }
 
+static const char *const layer_files[LAYERS] = {"patch.tif",  "energy.tif", "highlight.png",
+                                                "shadow.png", "labels.png", "influence.png"};
+
+static const char *const order_files[SCENE_INTERACTIONS_MAX] = {
+    "energy_order_1.tif", "energy_order_2.tif", "energy_order_3.tif", "energy_order_4.tif",
+    "energy_order_5.tif", "energy_order_6.tif", "energy_order_7.tif", "energy_order_8.tif"};
+
 /* Energies of further orders may be left from a run before, and are removed. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
-    static const char *const names[LAYERS] = {"patch.tif",  "energy.tif", "highlight.png",
-                                              "shadow.png", "labels.png", "influence.png"};
-    char name[32], path[PATH_CAPACITY];
+    char path[PATH_CAPACITY];
     for (int layer = 0; layer < LAYERS; layer++) {
-        CHECK(path_in(report, path, folder, "%s", names[layer]));
+        CHECK(path_in(report, path, folder, "%s", layer_files[layer]));
         CHECK(write_layer(report, facts, (enum layer)layer, path));
-        CHECK(file_list_add(&facts->files, report, folder, names[layer], true));
+        CHECK(file_list_add(&facts->files, report, folder, layer_files[layer], true));
     }
     CHECK(path_in(report, path, folder, QUICKLOOK));
     CHECK(write_quicklook(report, facts, path));
     CHECK(file_list_add(&facts->files, report, folder, QUICKLOOK, true));
     for (uint32_t order = 1; order <= SCENE_INTERACTIONS_MAX; order++) {
-        snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
+        const char *name = order_files[order - 1];
         CHECK(path_in(report, path, folder, "%s", name));
         if (order > facts->result->orders) {
             file_discard(path);
@@ -292,4 +297,19 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
     class_names_clear(&classes);
     image_labels_clear(&labels);
     return status;
+}
+
+void run_file_names(const char *names[RUN_FILES + 1])
+{
+    static const char *const others[] = {QUICKLOOK, TRUTH_DOCUMENT, REPORT_PAGE};
+    size_t count = 0;
+    for (size_t i = 0; i < COUNT(others); i++)
+        names[count++] = others[i];
+    for (int i = 0; i < LAYERS; i++)
+        names[count++] = layer_files[i];
+    for (int i = 0; i < LABEL_FILES; i++)
+        names[count++] = label_files[i].name;
+    for (int i = 0; i < SCENE_INTERACTIONS_MAX; i++)
+        names[count++] = order_files[i];
+    names[count] = NULL;
 }

@@ -121,6 +121,16 @@ def test_a_swath_that_changed_beside_the_patch_is_refused_by_name(sonject, scene
     assert_refused(sonject("run", scene, "-o", "result", *patch), 2, "differs in", "swath.tif")
 
 
+@pytest.mark.parametrize("name", ["image.tif", "labels.png", "truth.json", "coco.json", "image.txt", "energy_order_3.tif"])
+def test_a_file_of_something_else_is_refused_by_name(sonject, scene, tmp_path, name):
+    (tmp_path / name).write_bytes(b"mine")
+    before = {path: path.read_bytes() for path in files_below(tmp_path)}
+    assert_refused(sonject("run", scene, "-o", "."), 2, f"holds the file {name}, but no run.json", "--overwrite")
+    assert before == {path: path.read_bytes() for path in files_below(tmp_path)}
+    sonject.done("run", scene, "-o", ".", "--overwrite")
+    assert b"mine" not in [path.read_bytes() for path in tmp_path.glob("*.*")] and not (tmp_path / "work").exists()
+
+
 def truncate(path):
     path.write_bytes(path.read_bytes()[:-1])
 
