@@ -48,9 +48,10 @@ def inject(
     """Puts the scene's objects into a patch, which is never changed.
 
     patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
-    pixels. Its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
-    with contiguous columns are read in place. Other floating point arrays are converted to these;
-    anything else is refused. None if the scene's input makes the patch, uniform or synthetic.
+    pixels. Its pixel (0, 0) lies where the scene's geometry begins; the scene's own patch is not
+    used. float32 and complex64 arrays with contiguous columns are read in place. Other floating
+    point arrays are converted to these; anything else is refused. None if the scene's input makes
+    the patch, uniform or synthetic.
 
     transfer: for a patch of grey levels (uint8, uint16, float32) instead of amplitudes, as
     input.transfer of scenes: "{kind: decibel, parameter: 0.378}", or a dictionary. The image then
