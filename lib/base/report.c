@@ -7,13 +7,20 @@
 
 #include "base/text.h"
 
+/* Messages may be kept in files, so they do not follow the host's locale. */
+static void format_line(char line[REPORT_LINE], const char *format, va_list arguments)
+{
+    vsnprintf(line, REPORT_LINE, format, arguments);
+    text_use_points(line);
+    text_make_printable(line);
+}
+
 sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(report->message, REPORT_LINE, format, arguments);
+    format_line(report->message, format, arguments);
     va_end(arguments);
-    text_make_printable(report->message);
     return status;
 }
 
@@ -64,8 +71,7 @@ static void report_formatted(struct report *report, uint32_t level, const char *
                              va_list arguments)
 {
     char line[REPORT_LINE];
-    vsnprintf(line, sizeof line, format, arguments);
-    text_make_printable(line);
+    format_line(line, format, arguments);
     report_line(report, level, line);
 }
 

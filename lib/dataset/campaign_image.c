@@ -136,14 +136,11 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* Keeps the first line of the first reason, which goes into the record, and clears the message,
- * since the call goes on. */
+/* Keeps the first line of the first reason, and clears the message, since the call goes on. */
 static void keep_reason(struct report *report, const char *why, char reason[REASON_CAPACITY])
 {
-    if (!*reason) {
+    if (!*reason)
         snprintf(reason, REASON_CAPACITY, "%.*s", (int)strcspn(why, "\n"), why);
-        text_use_points(reason);
-    }
     report->message[0] = '\0';
 }
 
@@ -257,6 +254,7 @@ static const char *visibility_text(double decibels, char text[16])
     if (isnan(decibels))
         return "none";
     snprintf(text, 16, "%.1f dB", decibels);
+    text_use_points(text);
     return text;
 }
 

@@ -64,9 +64,9 @@ sonject_status contact_set_read(struct report *report, const char *path,
 
 /* Makes a shadow's box and the nearest highlight's box one contact, if both share rows of an image
  * and its side, and the highlight does not begin behind the shadow, columns counting slant range.
- * A box without a partner stays as it is. Of equal labels one
- * counts, and a note tells how many do not. Needs seen_side and is_reversed. Contacts are then in
- * the order of image, side, row and column. */
+ * A box without a partner stays as it is. Of equal labels one counts, and a note tells how many do
+ * not. Needs seen_side and is_reversed. Contacts are then in the order of image, side, row and
+ * column. */
 void contact_set_pair(struct report *report, struct contact_set *set);
 
 void contact_set_clear(struct contact_set *set);

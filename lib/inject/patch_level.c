@@ -334,11 +334,11 @@ static double gain_of(const sonject_object_params *object, double energy, double
     return 1.0;
 }
 
-/* An object whose echoes are scaled. */
+/* The scaling of an object's echoes. */
 struct scaled_object {
     double gain;
     double row, range_m; /* its place in the image; range_m: of its centre */
-    double size_m;
+    double size_m;       /* 0: the object is not traced */
 };
 
 /* Returns the gain of echoes by way of the seabed, or of several objects: the mean of the objects'
@@ -367,8 +367,8 @@ static double gain_about(const struct scaled_object *objects, uint32_t count,
 
 /* Scales a pixel's echoes: those of first hits by their objects' gains, the others by those about.
  */
-static void scale_pixel(struct echoes *echoes, const struct patch_view *view, const double *gains,
-                        const struct scaled_object *objects, uint32_t count, size_t i)
+static void scale_pixel(struct echoes *echoes, const struct patch_view *view,
+                        const struct scaled_object *objects, size_t i)
 {
     double energy = 0.0; /* first hits alone; `scaled`: with the gains */
     double scaled = 0.0;
@@ -381,11 +381,12 @@ static void scale_pixel(struct echoes *echoes, const struct patch_view *view, co
             continue;
         const size_t at = row * echo->columns + column - echo->first_column;
         energy += (double)echo->energy[at];
-        scaled += gains[number] * (double)echo->energy[at];
+        scaled += objects[number].gain * (double)echo->energy[at];
     }
     const double before = (double)echoes->target_energy[i];
     const bool is_direct = before - energy <= NO_INDIRECT * before;
-    const double about = is_direct ? 1.0 : gain_about(objects, count, view, row, column);
+    const double about =
+        is_direct ? 1.0 : gain_about(objects, echoes->object_count, view, row, column);
     const double gain = !is_direct     ? (scaled + about * (before - energy)) / before
                         : energy > 0.0 ? scaled / energy
                                        : 1.0;
@@ -430,39 +431,34 @@ static void set_level(const struct tracer *tracer, const struct object_echo *ech
     truth->seabed_strength_db = decibels(lambert * sine * sine);
 }
 
-static void scale_echoes(const struct tracer *tracer, struct echoes *echoes, const double *gains,
-                         const struct scaled_object *scaled, uint32_t count)
+static void scale_echoes(const struct tracer *tracer, struct echoes *echoes,
+                         const struct scaled_object *objects)
 {
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
-        scale_pixel(echoes, &tracer->view, gains, scaled, count, i);
+        scale_pixel(echoes, &tracer->view, objects, i);
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         struct object_echo *echo = &echoes->objects[i];
-        echo->peak_energy *= gains[i];
+        echo->peak_energy *= objects[i].gain;
         for (size_t k = 0; echo->energy && k < echoes->rows * echo->columns; k++)
-            echo->energy[k] *= (float)gains[i];
+            echo->energy[k] *= (float)objects[i].gain;
     }
 }
 
 sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
                                  struct injected_window *result)
 {
-    double *gains = allocate_array(echoes->object_count, sizeof *gains);
-    struct scaled_object *scaled = allocate_array(echoes->object_count, sizeof *scaled);
-    const bool has_memory = gains && scaled;
-    uint32_t count = 0;
+    struct scaled_object *objects = allocate_array(echoes->object_count, sizeof *objects);
     bool is_scaled = false;
-    for (uint32_t i = 0; has_memory && i < echoes->object_count; i++) {
-        gains[i] = 1.0;
+    CHECK_MEMORY(tracer->report, objects, "the objects' levels");
+    for (uint32_t i = 0; i < echoes->object_count; i++) {
+        objects[i].gain = 1.0;
         if (!tracer_follows(tracer, i))
             continue;
-        set_level(tracer, &echoes->objects[i], i, &scaled[count], &result->objects[i]);
-        gains[i] = scaled[count++].gain;
+        set_level(tracer, &echoes->objects[i], i, &objects[i], &result->objects[i]);
         is_scaled |= tracer->scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL;
     }
-    if (has_memory && is_scaled)
-        scale_echoes(tracer, echoes, gains, scaled, count);
-    free(gains);
-    free(scaled);
-    CHECK_MEMORY(tracer->report, has_memory, "the objects' levels");
+    if (is_scaled)
+        scale_echoes(tracer, echoes, objects);
+    free(objects);
     return SONJECT_OK;
 }

@@ -8,11 +8,11 @@
 #include "swath/decoder.h"
 #include "swath/image_head.h"
 
-/* A named text that is stored with an image, as a line "name=value" of its description. Neither
- * part may hold a newline. */
 /* The note of the largest number that a file may hold, if that is not its type's. */
 #define FULL_SCALE_NOTE "sonject:full_scale"
 
+/* A named text that is stored with an image, as a line "name=value" of its description. Neither
+ * part may hold a newline. */
 struct raster_attribute {
     const char *name;
     const char *value;
