@@ -25,12 +25,14 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
 
 /* Sorts the bins of lines one behind the other, from first_line on. A sorted line is stride *
  * bins_per_pixel long. Global size: groups of WIDTH columns x strips. */
-__kernel void sort_bins(__global const float *lines, int first_line, int bins, int first,
-                        int bins_per_pixel, int stride, __global float *sorted)
+__kernel void sort_bins(__global const float *lines, __global const struct filled_span *filled,
+                        int first_line, int bins, int first, int bins_per_pixel, int stride,
+                        __global float *sorted)
 {
     const LONG_INDEX strip = (LONG_INDEX)get_global_id(1);
-    sort_bins_of(lines + (first_line + strip) * bins, bins, first, bins_per_pixel, stride,
-                 (int)get_global_id(0) * WIDTH, sorted + strip * stride * bins_per_pixel);
+    sort_bins_of(lines + (first_line + strip) * bins, bins, filled[first_line + strip], first,
+                 bins_per_pixel, stride, (int)get_global_id(0) * WIDTH,
+                 sorted + strip * stride * bins_per_pixel);
 }
 
 /* Global size: groups of WIDTH columns x strips x planes. */

@@ -24,12 +24,16 @@ FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_pa
 
 /* Sorts a line's bins so that the bins from which neighbouring pixels take one tap lie side by
  * side. Bin k * bins_per_pixel + phase + first goes to sorted[phase * stride + k], for the WIDTH
- * elements k from `column` on and all phases. Bins outside the line are empty. */
-FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
-                           int stride, int column, GLOBAL float *sorted)
+ * elements k from `column` on and all phases. Bins outside the line are empty. Elements that lie so
+ * far from the filled bins that compression leaves them out stay as they are. */
+FUNCTION void sort_bins_of(GLOBAL const float *line, int bins, struct filled_span filled, int first,
+                           int bins_per_pixel, int stride, int column, GLOBAL float *sorted)
 {
+    const int group = WIDTH * bins_per_pixel;
     const int start = column * bins_per_pixel + first;
-    const int is_inside = start >= 0 && start + WIDTH * bins_per_pixel <= bins;
+    const int is_inside = start >= 0 && start + group <= bins;
+    if (start + 2 * group <= filled.first || start - group >= filled.end)
+        return;
     for (int phase = 0; phase < bins_per_pixel; phase++) {
         GLOBAL float *out = sorted + phase * stride + column;
         for (int lane = 0; lane < WIDTH; lane++) {

@@ -26,15 +26,21 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
     return taps;
 }
 
+/* Returns the number of the grid's first strip, counted from that of the first row formed. */
+static int32_t first_strip_of(const struct form_lines *lines)
+{
+    return lines->grid.strips.first - (int32_t)(lines->at.first_row * lines->grid.strips_per_row);
+}
+
 /* Combines lines by one real response for all rows and columns. */
 static sonject_status combine_plain(struct form_lines *lines, const device_buffer out[2])
 {
     size_t count;
-    const int32_t first_strip = lines->grid.strips.first;
+    const int32_t first_strip = first_strip_of(lines);
     const int32_t end_strip = first_strip + lines->grid.strips.count;
     const int32_t per_row = (int32_t)lines->grid.strips_per_row;
     const int32_t stride = (int32_t)lines->stride;
-    const int32_t rows = (int32_t)lines->rows;
+    const int32_t rows = (int32_t)lines->at.rows;
     device_buffer buffer = NULL;
     device_kernel kernel = NULL;
     float *taps = response_taps(lines, &count);
@@ -49,7 +55,8 @@ static sonject_status combine_plain(struct form_lines *lines, const device_buffe
             ARGUMENT(lines->filled), ARGUMENT(stride),          ARGUMENT(buffer),
             ARGUMENT(rows),          ARGUMENT(out[0]),          ARGUMENT(out[1])};
         const size_t global[3] = {lines->stride / lines->device->width,
-                                  (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM, lines->planes};
+                                  (lines->at.rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM,
+                                  lines->planes};
         status = kernel_run(lines->report, lines->device, kernel, arguments,
                             sizeof arguments / sizeof *arguments, 3, global);
     }
@@ -73,13 +80,13 @@ static sonject_status taps_init(struct taps *taps, const struct form_lines *line
     memset(taps, 0, sizeof *taps);
     taps->each = 2 * (size_t)lines->reach + 1;
     taps->blocks = lines->response.array_length_m > 0.0
-                       ? (lines->columns + FORM_BLOCK_COLUMNS - 1) / FORM_BLOCK_COLUMNS
+                       ? (lines->at.columns + FORM_BLOCK_COLUMNS - 1) / FORM_BLOCK_COLUMNS
                        : 1;
     taps->rows = 1;
     if (lines->response.motion) {
         const size_t most = TAPS_OF_A_RUN / taps->each / ROWS_PER_ITEM * ROWS_PER_ITEM;
         taps->rows = most < ROWS_PER_ITEM ? ROWS_PER_ITEM : most;
-        taps->rows = taps->rows < lines->rows ? taps->rows : lines->rows;
+        taps->rows = taps->rows < lines->at.rows ? taps->rows : lines->at.rows;
     }
     for (int part = 0; part < 2; part++) {
         taps->parts[part] = allocate_array(taps->each * taps->rows * taps->blocks, sizeof(float));
@@ -122,7 +129,7 @@ static void fill_blocks(struct taps *taps, const struct form_lines *lines)
     const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
     for (size_t block = 0; block < taps->blocks; block++) {
         const double column =
-            (double)lines->first_column + ((double)block + 0.5) * FORM_BLOCK_COLUMNS - 0.5;
+            (double)lines->at.first_column + ((double)block + 0.5) * FORM_BLOCK_COLUMNS - 0.5;
         const double range = view_processor_range(lines->view, column);
         for (size_t i = 0; i < taps->each; i++) {
             const struct complex_number w = cross_range_response(
@@ -146,9 +153,9 @@ static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
              buffer_create(lines->report, lines->device, bytes, taps->parts[part], &parts[part]));
     if (status == SONJECT_OK) {
         const bool by_row = lines->response.motion != NULL;
-        const size_t left = lines->rows - first_row;
+        const size_t left = lines->at.rows - first_row;
         const size_t some = by_row && taps->rows < left ? taps->rows : left;
-        const int32_t first_strip = lines->grid.strips.first;
+        const int32_t first_strip = first_strip_of(lines);
         const int32_t end_strip = first_strip + lines->grid.strips.count;
         const int32_t per_row = (int32_t)lines->grid.strips_per_row;
         const int32_t row = (int32_t)first_row;
@@ -183,9 +190,10 @@ static sonject_status run_moved(struct form_lines *lines, device_kernel kernel, 
     CHECK(motion_response_begin(&motion, lines->report, &lines->response, lines->view, strip,
                                 offset_of(lines), lines->reach));
     sonject_status status = SONJECT_OK;
-    for (size_t first = 0; status == SONJECT_OK && first < lines->rows; first += taps->rows) {
-        for (size_t i = 0; i < taps->rows && first + i < lines->rows; i++) {
-            motion_response_row(&motion, (double)(first + i), taps->response[0], taps->response[1]);
+    for (size_t first = 0; status == SONJECT_OK && first < lines->at.rows; first += taps->rows) {
+        for (size_t i = 0; i < taps->rows && first + i < lines->at.rows; i++) {
+            motion_response_row(&motion, (double)(lines->at.first_row + first + i),
+                                taps->response[0], taps->response[1]);
             store(taps, lines, i);
         }
         status = run_rows(lines, kernel, taps, first, out);

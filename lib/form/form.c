@@ -63,21 +63,38 @@ struct span next_filled_strips(const struct filled_span *filled, int32_t count, 
     return run;
 }
 
-/* Chooses the columns that the grid's bins reach through the pulse. A real aperture's begin with a
- * block of the view's, so that all lines of the view share their blocks' responses. */
+/* Returns the pixels of `count` that cells first...end - 1 reach, at `per_pixel` cells a pixel and
+ * `reach` cells to each side. */
+static size_t reached(struct span cells, double per_pixel, int32_t reach, size_t count,
+                      size_t *first)
+{
+    const double low = ceil(((double)cells.first - reach) / per_pixel);
+    const double high = floor(((double)cells.first + cells.count - 1 + reach) / per_pixel);
+    if (high < 0.0 || high < low || low >= (double)count)
+        return 0;
+    *first = (size_t)fmax(low, 0.0);
+    return (size_t)fmin(high, (double)count - 1.0) + 1 - *first;
+}
+
+/* Chooses the pixels that the grid's cells reach through the pulse and the cross-range response. A
+ * real aperture's columns begin with a block of the view's, so that all lines of the view share
+ * their blocks' responses. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
                           int32_t taps_each_side)
 {
-    const double per_pixel = lines->grid.bins_per_pixel;
-    const double first = ceil((double)(lines->grid.bins.first - taps_each_side) / per_pixel);
-    const double last = floor(
-        (double)(lines->grid.bins.first + lines->grid.bins.count - 1 + taps_each_side) / per_pixel);
-    const double low = fmax(first, 0.0);
-    const double high = fmin(last, (double)view->columns - 1.0);
+    const struct line_grid *grid = &lines->grid;
+    struct window *at = &lines->at;
     const size_t block = lines->response.array_length_m > 0.0 ? FORM_BLOCK_COLUMNS : 1;
-    lines->first_column = high < low ? 0 : (size_t)low / block * block;
-    lines->columns = high < low ? 0 : (size_t)high + 1 - lines->first_column;
-    lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
+    at->rows =
+        reached(grid->strips, grid->strips_per_row, lines->reach, view->rows, &at->first_row);
+    at->columns =
+        reached(grid->bins, grid->bins_per_pixel, taps_each_side, view->columns, &at->first_column);
+    at->columns = at->rows == 0 ? 0 : at->columns;
+    if (at->columns == 0)
+        return;
+    at->columns += at->first_column % block;
+    at->first_column -= at->first_column % block;
+    lines->stride = (at->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
 /* Makes the taps of G, or of |G|^2; both parts where G is complex. */
@@ -130,7 +147,6 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     lines->grid = *grid;
     lines->kind = kind;
     lines->planes = kind == FORM_ENERGY && cross_range_is_plain(response) ? 1 : 2;
-    lines->rows = view->rows;
     lines->row_spacing_m = view->row_spacing_m;
     lines->view = view;
     lines->response = *response;
@@ -139,7 +155,7 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                        ? pulse_tail_bins(view, response, grid->bins_per_pixel)
                                        : pulse_reach_bins(view, response, grid->bins_per_pixel);
     choose_window(lines, view, taps_each_side);
-    if (lines->columns == 0)
+    if (lines->at.columns == 0)
         return SONJECT_OK;
     const size_t bytes = (size_t)grid->strips.count * lines->stride * sizeof(float);
     lines->filled_columns =
@@ -173,12 +189,12 @@ void form_lines_end(struct form_lines *lines)
 /* Returns the offset to j * bins_per_pixel from which column j takes bins. */
 static int32_t first_bin_of_columns(const struct form_lines *lines)
 {
-    return lines->pulse_first + (int32_t)(lines->first_column * lines->grid.bins_per_pixel);
+    return lines->pulse_first + (int32_t)(lines->at.first_column * lines->grid.bins_per_pixel);
 }
 
 /* Sorts some lines of each plane by the pixels that take their bins. NULL planes give zeros. */
 static sonject_status sort_bins(struct form_lines *lines, struct span some,
-                                const device_buffer bins[2], int32_t stride,
+                                const device_buffer bins[2], device_buffer filled, int32_t stride,
                                 device_buffer sorted[2])
 {
     const int32_t bin_count = lines->grid.bins.count;
@@ -192,9 +208,10 @@ static sonject_status sort_bins(struct form_lines *lines, struct span some,
             continue;
         }
         CHECK(buffer_reserve(lines->report, lines->device, bytes, &sorted[part]));
-        const struct kernel_argument arguments[] = {
-            ARGUMENT(bins[part]), ARGUMENT(some.first), ARGUMENT(bin_count),   ARGUMENT(first),
-            ARGUMENT(per_pixel),  ARGUMENT(stride),     ARGUMENT(sorted[part])};
+        const struct kernel_argument arguments[] = {ARGUMENT(bins[part]), ARGUMENT(filled),
+                                                    ARGUMENT(some.first), ARGUMENT(bin_count),
+                                                    ARGUMENT(first),      ARGUMENT(per_pixel),
+                                                    ARGUMENT(stride),     ARGUMENT(sorted[part])};
         CHECK(kernel_run(lines->report, lines->device, lines->sort, arguments, COUNT(arguments), 2,
                          global));
     }
@@ -243,7 +260,7 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     for (; status == SONJECT_OK && some.first < count; some.first += most) {
         device_buffer sorted[2] = {NULL, NULL};
         some.count = count - some.first < most ? count - some.first : most;
-        status = sort_bins(lines, some, bins, stride, sorted);
+        status = sort_bins(lines, some, bins, filled, stride, sorted);
         THEN(status, compress_sorted(lines, strip, some, sorted, stride, filled));
         buffer_release(lines->device, &sorted[0]);
         buffer_release(lines->device, &sorted[1]);
@@ -281,7 +298,7 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
                               const float *real_part, const float *imaginary_part)
 {
     const size_t width = (size_t)lines->grid.bins.count;
-    if (lines->columns == 0 || count == 0)
+    if (lines->at.columns == 0 || count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
@@ -348,7 +365,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
                                      (int32_t)(view->first_column * lines->grid.bins_per_pixel),
                                  lines->grid.bins.count};
     device_buffer bins[2];
-    if (lines->columns == 0 || count == 0)
+    if (lines->at.columns == 0 || count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
@@ -363,25 +380,24 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     return status;
 }
 
-/* Reads a plane and drops the padding of its rows. */
-static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *out)
+/* Reads a plane into rows that are `step` floats apart. */
+static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *out,
+                                 size_t step)
 {
     const void *mapped;
-    CHECK(buffer_map(lines->report, lines->device, plane, lines->rows * lines->stride * sizeof *out,
-                     &mapped));
+    CHECK(buffer_map(lines->report, lines->device, plane,
+                     lines->at.rows * lines->stride * sizeof *out, &mapped));
     const float *padded = mapped;
-    for (size_t row = 0; row < lines->rows; row++)
-        memcpy(out + row * lines->columns, padded + row * lines->stride,
-               lines->columns * sizeof *out);
+    for (size_t row = 0; row < lines->at.rows; row++)
+        memcpy(out + row * step, padded + row * lines->stride, lines->at.columns * sizeof *out);
     buffer_unmap(lines->device, plane, mapped);
     return SONJECT_OK;
 }
 
-sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part)
+static sonject_status combine_into(struct form_lines *lines, float *real_part,
+                                   float *imaginary_part, size_t step)
 {
-    if (lines->columns == 0)
-        return SONJECT_OK;
-    const size_t bytes = lines->rows * lines->stride * sizeof(float);
+    const size_t bytes = lines->at.rows * lines->stride * sizeof(float);
     device_buffer out[2] = {NULL, NULL};
     sonject_status status = buffer_reserve(lines->report, lines->device, bytes, &out[0]);
     THEN(status, buffer_reserve(lines->report, lines->device, bytes, &out[1]));
@@ -389,11 +405,29 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
                                (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
                                lines->filled_columns, &lines->filled));
     THEN(status, form_combine(lines, out));
-    THEN(status, read_plane(lines, out[0], real_part));
+    THEN(status, read_plane(lines, out[0], real_part, step));
     if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
-        status = read_plane(lines, out[1], imaginary_part);
+        status = read_plane(lines, out[1], imaginary_part, step);
     buffer_release(lines->device, &out[0]);
     buffer_release(lines->device, &out[1]);
     buffer_release(lines->device, &lines->filled);
     return status;
+}
+
+sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part)
+{
+    return lines->at.columns == 0
+               ? SONJECT_OK
+               : combine_into(lines, real_part, imaginary_part, lines->at.columns);
+}
+
+sonject_status form_lines_finish_view(struct form_lines *lines, float *real_part,
+                                      float *imaginary_part)
+{
+    const size_t columns = lines->view->columns;
+    const size_t first = lines->at.first_row * columns + lines->at.first_column;
+    if (lines->at.columns == 0)
+        return SONJECT_OK;
+    return combine_into(lines, real_part + first, imaginary_part ? imaginary_part + first : NULL,
+                        columns);
 }

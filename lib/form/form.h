@@ -44,10 +44,10 @@ struct form_lines {
     const struct patch_view *view; /* borrowed */
     struct line_grid grid;
     enum form_kind kind;
-    size_t planes;                /* planes of lines and pixels: 1 or 2 */
-    size_t rows, columns, stride; /* pixels; stride: floats from one line to the next */
-    size_t first_column; /* first of the patch's columns in the window, which is `columns` wide */
-    int32_t reach;       /* reach of the cross-range response, strips */
+    size_t planes;    /* planes of lines and pixels: 1 or 2 */
+    struct window at; /* the view's pixels that are formed; none: columns is 0 */
+    size_t stride;    /* floats from one line of columns to the next */
+    int32_t reach;    /* reach of the cross-range response, strips */
     int32_t pulse_first, pulse_taps;
     struct filled_span *filled_columns; /* columns that each strip's line fills; owned */
     double row_spacing_m;
@@ -58,9 +58,9 @@ struct form_lines {
     device_kernel sort, compress;
 };
 
-/* Prepares lines for the patch's rows, and those of its columns that bins of the grid reach.
- * Without such columns lines->columns is 0 and the other calls do nothing. After success the caller
- * calls form_lines_end; on failure nothing is held. Errors: DEVICE, MEMORY. */
+/* Prepares lines for those of the view's pixels that cells of the grid reach. Without such pixels
+ * lines->at.columns is 0 and the other calls do nothing. After success the caller calls
+ * form_lines_end; on failure nothing is held. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                 struct device *device, const struct patch_view *view,
                                 const struct point_response *response, enum form_kind kind,
@@ -87,11 +87,16 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream);
 
-/* Combines all lines into two planes of rows x lines->columns pixels. imaginary_part may be NULL
- * for FORM_ENERGY. Errors: DEVICE, MEMORY. */
+/* Combines all lines into two planes of the pixels in lines->at. imaginary_part may be NULL for
+ * FORM_ENERGY. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part);
 
-/* Combines all lines into padded planes of rows x lines->stride on the device. */
+/* Combines as form_lines_finish does, into planes of all of the view's pixels. Those outside
+ * lines->at stay as they are. */
+sonject_status form_lines_finish_view(struct form_lines *lines, float *real_part,
+                                      float *imaginary_part);
+
+/* Combines all lines into padded planes of lines->at.rows x lines->stride on the device. */
 sonject_status form_combine(struct form_lines *lines, const device_buffer out[2]);
 
 static inline bool form_is_of_energies(const struct form_lines *lines)

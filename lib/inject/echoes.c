@@ -75,15 +75,30 @@ void echoes_clear(struct echoes *echoes)
 
 sonject_status form_end(struct form_lines *lines, struct formed *formed)
 {
-    formed->first_column = lines->first_column;
-    formed->columns = lines->columns;
-    formed->count = lines->rows * lines->columns;
+    formed->at = lines->at;
+    formed->count = lines->at.rows * lines->at.columns;
     formed->planes = allocate_array(2 * formed->count, sizeof *formed->planes);
     const sonject_status status =
         formed->planes ? form_lines_finish(lines, formed->planes, formed->planes + formed->count)
                        : report_out_of_memory(lines->report, "image formation");
     form_lines_end(lines);
     return status;
+}
+
+void echoes_add_window(float *patch, const struct echoes *echoes, const float *window,
+                       const struct window *at)
+{
+    for (size_t row = 0; row < at->rows; row++)
+        for (size_t column = 0; column < at->columns; column++)
+            patch[(at->first_row + row) * echoes->columns + at->first_column + column] +=
+                window[row * at->columns + column];
+}
+
+void echoes_add_field(const struct echoes *echoes, const struct formed *formed, float *real_part,
+                      float *imaginary_part)
+{
+    echoes_add_window(real_part, echoes, formed->planes, &formed->at);
+    echoes_add_window(imaginary_part, echoes, formed->planes + formed->count, &formed->at);
 }
 
 sonject_status form_speckle(struct tracer *tracer, const struct line_grid *grid,
@@ -126,7 +141,7 @@ static sonject_status form_energies(struct forming *forming, const struct point_
     THEN(status,
          form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0], NULL));
     if (status == SONJECT_OK && impulse_lines_end(lines)) {
-        status = form_lines_finish(energies, formed, NULL);
+        status = form_lines_finish_view(energies, formed, NULL);
         form_lines_end(energies);
     }
     return status;
@@ -164,7 +179,7 @@ static sonject_status add_seabed(struct forming *forming, const struct impulse_l
     if (!impulse_lines_end(lines))
         return SONJECT_OK;
     const sonject_status status =
-        form_lines_finish(field, echoes->seabed_real, echoes->seabed_imaginary);
+        form_lines_finish_view(field, echoes->seabed_real, echoes->seabed_imaginary);
     form_lines_end(field);
     return status;
 }
@@ -253,7 +268,7 @@ static sonject_status add_hidden(struct forming *forming, const struct impulse_l
     struct echoes *echoes = forming->echoes;
     struct object_echo *echo = &echoes->objects[lines->number];
     struct point_response response;
-    struct formed hidden = {NULL, 0, 0, 0};
+    struct formed hidden = {.planes = NULL};
     response_of_pings(&response, tracer);
     if (line_grid_cells(&lines->grid) == 0)
         return SONJECT_OK;
@@ -263,8 +278,8 @@ static sonject_status add_hidden(struct forming *forming, const struct impulse_l
                                            lines->strips.count, lines->plane[0], NULL);
     THEN(status, form_end(&forming->energies, &hidden));
     for (size_t i = 0; status == SONJECT_OK && i < hidden.count; i++) {
-        const size_t row = i / hidden.columns;
-        const size_t column = hidden.first_column + i % hidden.columns;
+        const size_t row = hidden.at.first_row + i / hidden.at.columns;
+        const size_t column = hidden.at.first_column + i % hidden.at.columns;
         const size_t pixel = row * echoes->columns + column;
         const float all = forming->beam_seabed[pixel];
         const float share = all > 0.0f ? hidden.planes[i] / all : 0.0f;
@@ -309,7 +324,7 @@ static sonject_status finish_chains(struct forming *forming, bool is_brute_force
     const struct line_grid *grid = &forming->chains_grid;
     const struct impulse_lines all = {IMPULSES_CHAINS, 0, *grid,
                                       grid->strips,    1, {forming->chains}};
-    struct formed drawn = {NULL, 0, 0, 0};
+    struct formed drawn = {.planes = NULL};
     float *energy = allocate_array(pixels, sizeof *energy);
     CHECK_MEMORY(forming->tracer->report, energy, "multiple interactions");
     sonject_status status = form_energies(forming, &forming->tracer->response, &all, energy);
@@ -318,12 +333,12 @@ static sonject_status finish_chains(struct forming *forming, bool is_brute_force
     if (status == SONJECT_OK)
         add_plane(echoes->energy, energy, pixels);
     if (status == SONJECT_OK && is_brute_force) {
-        memcpy(echoes->seabed_real, drawn.planes, pixels * sizeof(float));
-        memcpy(echoes->seabed_imaginary, drawn.planes + drawn.count, pixels * sizeof(float));
+        memset(echoes->seabed_real, 0, pixels * sizeof(float));
+        memset(echoes->seabed_imaginary, 0, pixels * sizeof(float));
+        echoes_add_field(echoes, &drawn, echoes->seabed_real, echoes->seabed_imaginary);
     } else if (status == SONJECT_OK) {
         add_plane(echoes->target_energy, energy, pixels);
-        add_plane(echoes->target_real, drawn.planes, pixels);
-        add_plane(echoes->target_imaginary, drawn.planes + drawn.count, pixels);
+        echoes_add_field(echoes, &drawn, echoes->target_real, echoes->target_imaginary);
     }
     free(energy);
     free(drawn.planes);

@@ -111,10 +111,11 @@ struct object_former {
     uint32_t number;
     struct line_grid grid; /* grid of the object's tile */
     float *rough_energy;   /* the tile's; NULL: no realisation is drawn */
-    float
-        *glint; /* field of the object's parts, which interfere: two planes of all rows. Columns are
-                   those of the echo, or all where multi-bounce paths may lead farther; owned */
+    float *glint;          /* field of the object's parts, which interfere: two planes of all rows.
+                              Columns are those of the echo, or all where multi-bounce paths may lead
+                              farther; owned */
     size_t first_column, columns;
+    struct span glint_rows;  /* rows outside which the field is 0 */
     struct form_lines lines; /* lines of the glints or multi-bounce echoes that come in */
     struct peak_lattice glint_peak, rough_peak;
 };
@@ -129,13 +130,22 @@ void object_former_clear(struct object_former *former);
 
 /* Formed pixels, both planes in one array. */
 struct formed {
-    float *planes;                       /* owned */
-    size_t first_column, columns, count; /* count: pixels of one plane, which has all rows */
+    float *planes;    /* owned */
+    struct window at; /* the view's pixels that they hold */
+    size_t count;     /* pixels of one plane */
 };
 
 /* Combines all lines into *formed and ends them. The caller frees the planes by free(). Errors:
  * DEVICE, MEMORY. */
 sonject_status form_end(struct form_lines *lines, struct formed *formed);
+
+/* Adds formed pixels to a plane of all of the view's pixels. */
+void echoes_add_window(float *patch, const struct echoes *echoes, const float *window,
+                       const struct window *at);
+
+/* Adds both parts of formed pixels to a field of all of the view's pixels. */
+void echoes_add_field(const struct echoes *echoes, const struct formed *formed, float *real_part,
+                      float *imaginary_part);
 
 /* Forms a realisation of energies on a grid: sqrt(energy) times complex normal deviates. Errors:
  * DEVICE, MEMORY. */

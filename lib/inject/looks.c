@@ -268,7 +268,7 @@ sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const stru
 {
     struct line_grid grid;
     struct form_lines lines;
-    struct formed formed = {NULL, 0, 0, 0};
+    struct formed formed = {.planes = NULL};
     if (window->rows == 0 || window->columns == 0)
         return SONJECT_OK;
     line_grid_for_patch(&grid, &tracer->view, &tracer->response);
@@ -279,8 +279,8 @@ sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const stru
     THEN(status, form_end(&lines, &formed));
     for (size_t k = 0; status == SONJECT_OK && k < window->rows; k++) {
         const size_t to = (window->first_row + k) * tracer->view.columns + window->first_column;
-        const size_t from =
-            (window->first_row + k) * formed.columns + window->first_column - formed.first_column;
+        const size_t from = (window->first_row + k - formed.at.first_row) * formed.at.columns +
+                            window->first_column - formed.at.first_column;
         const size_t bytes = window->columns * sizeof(float);
         memcpy(real_part + to, formed.planes + from, bytes);
         memcpy(imaginary_part + to, formed.planes + formed.count + from, bytes);

@@ -87,10 +87,12 @@ static sonject_status peak_lattice_finish(struct peak_lattice *lattice)
 {
     struct formed formed;
     const sonject_status status = form_end(&lattice->lines, &formed);
-    for (size_t row = 0; status == SONJECT_OK && row < 2 * lattice->view.rows; row++) {
-        float *to = lattice->planes + row * lattice->view.columns + formed.first_column;
-        for (size_t column = 0; column < formed.columns; column++)
-            to[column] += formed.planes[row * formed.columns + column];
+    const struct window *at = &formed.at;
+    for (size_t row = 0; status == SONJECT_OK && row < 2 * at->rows; row++) {
+        const size_t to_row = row / at->rows * lattice->view.rows + at->first_row + row % at->rows;
+        float *to = lattice->planes + to_row * lattice->view.columns + at->first_column;
+        for (size_t column = 0; column < at->columns; column++)
+            to[column] += formed.planes[row * at->columns + column];
     }
     free(formed.planes);
     return status;
@@ -195,13 +197,11 @@ static double peak_of_echo(const struct peak_lattice *glint, const struct peak_l
     return peak;
 }
 
-/* Adds a window's plane to a plane of the whole patch. */
-static void add_window(float *patch, const struct echoes *echoes, const float *window,
-                       size_t first_column, size_t columns)
+/* Returns the pixels of the patch that an object's echo holds. */
+static struct window window_of(const struct object_echo *echo, const struct echoes *echoes)
 {
-    for (size_t row = 0; row < echoes->rows; row++)
-        for (size_t column = 0; column < columns; column++)
-            patch[row * echoes->columns + first_column + column] += window[row * columns + column];
+    const struct window at = {0, echoes->rows, echo->first_column, echo->columns};
+    return at;
 }
 
 /* Marks the window's pixels in which some ray met the object. The echo lies within the response's
@@ -240,9 +240,10 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
     struct form_lines lines;
     CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
                            FORM_TWO_ENERGIES, &tile->grid));
-    const size_t pixels = echoes->rows * lines.columns;
-    echo->first_column = lines.first_column;
-    echo->columns = lines.columns;
+    const size_t pixels = echoes->rows * lines.at.columns;
+    const size_t first = lines.at.first_row * lines.at.columns;
+    echo->first_column = lines.at.first_column;
+    echo->columns = lines.at.columns;
     echo->energy = allocate_array(pixels, sizeof(float));
     echo->lost = allocate_array(pixels, sizeof(float));
     echo->covered = allocate_array(pixels, 1);
@@ -250,7 +251,7 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
                                 ? form_lines_add(&lines, tile->strips.first, tile->strips.count,
                                                  tile->plane[TILE_ENERGY], tile->plane[TILE_LOST])
                                 : report_out_of_memory(tracer->report, "an object's echo");
-    THEN(status, form_lines_finish(&lines, echo->energy, echo->lost));
+    THEN(status, form_lines_finish(&lines, echo->energy + first, echo->lost + first));
     form_lines_end(&lines);
     if (status == SONJECT_OK) {
         const struct patch_view *view = &tracer->view;
@@ -258,7 +259,8 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
         const double along = cross_range_energy_width(response, view->farthest_m) +
                              cross_range_shift(response, view->farthest_m);
         const double across = range_energy_width(response) + range_shift(response);
-        add_window(echoes->lost_energy, echoes, echo->lost, echo->first_column, echo->columns);
+        const struct window at = window_of(echo, echoes);
+        echoes_add_window(echoes->lost_energy, echoes, echo->lost, &at);
         echo->lobe_rows = (size_t)fmax(1.0, floor(along / view->row_spacing_m));
         echo->lobe_columns = (size_t)fmax(1.0, floor(across / view->column_spacing_m));
         mark_covered(echo, &tile->grid, tile->plane[TILE_FOOTPRINT], echoes->rows);
@@ -312,29 +314,23 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
     return SONJECT_OK;
 }
 
-/* Adds formed pixels to a field of the whole patch. */
-static void add_field(const struct echoes *echoes, const struct formed *formed, float *real_part,
-                      float *imaginary_part)
-{
-    add_window(real_part, echoes, formed->planes, formed->first_column, formed->columns);
-    add_window(imaginary_part, echoes, formed->planes + formed->count, formed->first_column,
-               formed->columns);
-}
-
 /* Adds formed pixels to the object's glint, and to the coherent part of all looks. */
 static void add_glint(struct object_former *former, struct echoes *echoes,
                       const struct formed *formed)
 {
     for (size_t i = 0; i < formed->count; i++) {
-        const size_t column = formed->first_column + i % formed->columns;
+        const size_t column = formed->at.first_column + i % formed->at.columns;
         if (column < former->first_column || column >= former->first_column + former->columns)
             continue;
-        const size_t at = i / formed->columns * former->columns + column - former->first_column;
+        const size_t row = formed->at.first_row + i / formed->at.columns;
+        const size_t at = row * former->columns + column - former->first_column;
         former->glint[at] += formed->planes[i];
         former->glint[echoes->rows * former->columns + at] += formed->planes[formed->count + i];
     }
+    const struct span rows = {(int32_t)formed->at.first_row, (int32_t)formed->at.rows};
+    former->glint_rows = span_join(former->glint_rows, rows);
     if (echoes->coherent_real)
-        add_field(echoes, formed, echoes->coherent_real, echoes->coherent_imaginary);
+        echoes_add_field(echoes, formed, echoes->coherent_real, echoes->coherent_imaginary);
 }
 
 /* Forms lines of glints on a lattice. */
@@ -368,7 +364,7 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
         return SONJECT_OK;
     const sonject_status status = form_end(&former->lines, &formed);
     if (status == SONJECT_OK) {
-        add_field(echoes, &formed, echoes->target_real, echoes->target_imaginary);
+        echoes_add_field(echoes, &formed, echoes->target_real, echoes->target_imaginary);
         add_glint(former, echoes, &formed);
     }
     free(formed.planes);
@@ -380,16 +376,19 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
 static void add_glint_energy(const struct object_former *former, struct echoes *echoes)
 {
     struct object_echo *echo = &echoes->objects[former->number];
-    const size_t count = echoes->rows * former->columns;
-    for (size_t i = 0; i < count; i++) {
-        const float energy = former->glint[i] * former->glint[i] +
-                             former->glint[count + i] * former->glint[count + i];
-        const size_t row = i / former->columns;
-        const size_t column = former->first_column + i % former->columns;
-        echoes->target_energy[row * echoes->columns + column] += energy;
-        if (column >= echo->first_column && column < echo->first_column + echo->columns)
-            echo->energy[row * echo->columns + column - echo->first_column] += energy;
-    }
+    const size_t first_row = (size_t)former->glint_rows.first;
+    const size_t end_row = first_row + (size_t)former->glint_rows.count;
+    const float *imaginary_part = former->glint + echoes->rows * former->columns;
+    for (size_t row = first_row; row < end_row; row++)
+        for (size_t k = 0; k < former->columns; k++) {
+            const size_t i = row * former->columns + k;
+            const size_t column = former->first_column + k;
+            const float energy =
+                former->glint[i] * former->glint[i] + imaginary_part[i] * imaginary_part[i];
+            echoes->target_energy[row * echoes->columns + column] += energy;
+            if (column >= echo->first_column && column < echo->first_column + echo->columns)
+                echo->energy[row * echo->columns + column - echo->first_column] += energy;
+        }
 }
 
 sonject_status object_echoes_finish(struct object_former *former, struct echoes *echoes,
@@ -399,15 +398,16 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
         return SONJECT_OK;
     struct object_echo *echo = &echoes->objects[former->number];
     echo->peak_energy = peak_of_echo(&former->glint_peak, &former->rough_peak, &echo->peak_range_m);
+    const struct window at = window_of(echo, echoes);
     if (echo->energy)
-        add_window(echoes->target_energy, echoes, echo->energy, echo->first_column, echo->columns);
+        echoes_add_window(echoes->target_energy, echoes, echo->energy, &at);
     add_glint_energy(former, echoes);
     if (former->rough_energy) {
         struct formed drawn;
         const sonject_status status = form_speckle(tracer, &former->grid, former->rough_energy,
                                                    STREAM_OBJECT_SPECKLE + former->number, &drawn);
         if (status == SONJECT_OK)
-            add_field(echoes, &drawn, echoes->target_real, echoes->target_imaginary);
+            echoes_add_field(echoes, &drawn, echoes->target_real, echoes->target_imaginary);
         free(drawn.planes);
         CHECK(status);
     }

@@ -56,16 +56,18 @@ bool multibounce_sums_add(struct multibounce_sums *sums,
     return true;
 }
 
-static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t count)
+/* Adds a run of sums, which lies in one tile. */
+static bool add_run(void *user, uint64_t first, const int64_t *values, size_t count)
 {
     struct multibounce_sums *sums = user;
-    if (first % TILE_SUMS != 0 || count != TILE_SUMS)
+    const size_t at = first % TILE_SUMS;
+    if (count > TILE_SUMS - at)
         return false;
     int64_t **tile = &sums->tiles[first / TILE_SUMS];
     if (!*tile)
         *tile = allocate_array(TILE_SUMS, sizeof **tile);
     for (size_t i = 0; i < count; i++)
-        if (!*tile || !add_without_overflow(&(*tile)[i], values[i]))
+        if (!*tile || !add_without_overflow(&(*tile)[at + i], values[i]))
             return false;
     return true;
 }
@@ -76,12 +78,12 @@ sonject_status multibounce_sums_share(struct multibounce_sums *sums, struct chec
     if (!checkpoint)
         return SONJECT_OK;
     if (checkpoint->files)
-        return checkpoint_add_up(checkpoint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
+        return checkpoint_add_up(checkpoint, (uint64_t)tiles * TILE_SUMS, add_run, sums);
     sonject_status status =
         sums_writer_begin_sums(&checkpoint->writer, (uint64_t)tiles * TILE_SUMS);
     for (size_t i = 0; status == SONJECT_OK && i < tiles; i++)
         if (sums->tiles[i])
-            status = sums_writer_run(&checkpoint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
+            status = sums_writer_add(&checkpoint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
                                      TILE_SUMS);
     return status == SONJECT_OK ? sums_writer_end_sums(&checkpoint->writer) : status;
 }
@@ -142,9 +144,25 @@ static struct multibounce_region region_of_tile(const struct multibounce_sums *s
     return region;
 }
 
+/* Drops tiles without an echo: shards do not keep them, and regions must not depend on shards. */
+static void drop_empty_tiles(struct multibounce_sums *sums)
+{
+    for (size_t i = 0; i < sums->rows * sums->columns; i++) {
+        size_t k = 0;
+        while (sums->tiles[i] && k < TILE_SUMS && sums->tiles[i][k] == 0)
+            k++;
+        if (k == TILE_SUMS) {
+            free(sums->tiles[i]);
+            sums->tiles[i] = NULL;
+        }
+    }
+}
+
 sonject_status multibounce_find_regions(struct multibounce *multibounce, struct report *report)
 {
     size_t tiles = 0;
+    for (size_t k = 0; k < multibounce->count; k++)
+        drop_empty_tiles(&multibounce->sums[k]);
     for (size_t k = 0; k < multibounce->count; k++)
         for (size_t i = 0; i < multibounce->sums[k].rows * multibounce->sums[k].columns; i++)
             tiles += multibounce->sums[k].tiles[i] != NULL;

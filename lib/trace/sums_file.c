@@ -125,12 +125,30 @@ sonject_status sums_writer_begin_sums(struct sums_writer *writer, uint64_t count
     return add(writer, &count, sizeof count);
 }
 
-sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
-                               size_t count)
+static sonject_status add_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
+                              size_t count)
 {
     const uint64_t head[2] = {first, count};
     CHECK(add(writer, head, sizeof head));
     return add(writer, values, count * sizeof *values);
+}
+
+sonject_status sums_writer_add(struct sums_writer *writer, uint64_t first, const int64_t *values,
+                               size_t count)
+{
+    for (size_t i = 0; i < count;) {
+        if (values[i] == 0) {
+            i++;
+            continue;
+        }
+        const size_t start = i;
+        size_t last = i;
+        for (; i < count && i - last <= ZEROS_MOST; i++)
+            if (values[i] != 0)
+                last = i;
+        CHECK(add_run(writer, first + start, values + start, last + 1 - start));
+    }
+    return SONJECT_OK;
 }
 
 sonject_status sums_writer_end_sums(struct sums_writer *writer)
@@ -142,18 +160,7 @@ sonject_status sums_writer_end_sums(struct sums_writer *writer)
 sonject_status sums_writer_add_all(struct sums_writer *writer, const int64_t *values, size_t count)
 {
     sonject_status status = sums_writer_begin_sums(writer, count);
-    for (size_t i = 0; status == SONJECT_OK && i < count;) {
-        if (values[i] == 0) {
-            i++;
-            continue;
-        }
-        const size_t first = i;
-        size_t last = i;
-        for (; i < count && i - last <= ZEROS_MOST; i++)
-            if (values[i] != 0)
-                last = i;
-        status = sums_writer_run(writer, first, values + first, last + 1 - first);
-    }
+    THEN(status, sums_writer_add(writer, 0, values, count));
     return status == SONJECT_OK ? sums_writer_end_sums(writer) : status;
 }
 

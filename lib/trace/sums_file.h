@@ -69,9 +69,10 @@ sonject_status sums_writer_begin(struct sums_writer *writer, struct report *repo
                                  const char *path, const char *folder);
 void sums_writer_clear(struct sums_writer *writer);
 
-/* Writes a block of sums: begin, runs in any order, end. Errors: STORAGE, MEMORY. */
+/* Writes a block of sums: begin, pieces in any order, end. A piece is written as the runs in it
+ * that are not all 0. Errors: STORAGE, MEMORY. */
 sonject_status sums_writer_begin_sums(struct sums_writer *writer, uint64_t count);
-sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
+sonject_status sums_writer_add(struct sums_writer *writer, uint64_t first, const int64_t *values,
                                size_t count);
 sonject_status sums_writer_end_sums(struct sums_writer *writer);
 

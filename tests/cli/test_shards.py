@@ -227,3 +227,20 @@ def test_an_accuracy_takes_as_many_rays_in_shards_and_stages(sonject, scene, tmp
     assert (tmp_path / "given/energy.tif").read_bytes() == (tmp_path / "one/energy.tif").read_bytes()
     assert_refused(sonject("run", scene, "-o", "both", *asked, "--set", "injection.rays=2"), 3,
                    "injection.rays: accuracy decides the number of rays")
+
+
+def test_echoes_between_objects_are_the_same_in_shards(sonject, scene, tmp_path):
+    """Specular paths by way of two objects lie in a few cells of large grids, of which shards keep the filled ones."""
+    scene.write_text(scene.read_text() + """
+  - {shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 10 deg, material: {reflection: 1, roughness: 0, lambert: 0},
+     position: {row: 24, column: 40}}
+""")
+    asked = ["--set", "injection.interactions=2", "--set", "objects[0].material={reflection: 1, roughness: 0, lambert: 0}"]
+    command(sonject, "run", scene, "-o", "one", *asked)
+    command(sonject, "run", scene, "-o", "direct", *asked, "--set", "injection.interactions=1")
+    for shard in ("1/3", "2/3", "3/3"):
+        command(sonject, "run", scene, "-o", "parts", "--shard", shard, *asked)
+    command(sonject, "merge", "parts")
+    assert contents(tmp_path / "parts") == contents(tmp_path / "one")
+    patches = [(tmp_path / name / "patch.tif").read_bytes() for name in ("one", "direct")]
+    assert patches[0] != patches[1]

@@ -62,7 +62,7 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
 {
     const size_t count = (size_t)lines->grid.bins.count;
     const int32_t strips = lines->grid.strips.count;
-    struct planes pixels = planes_of(lines->rows * lines->columns);
+    struct planes pixels = planes_of(lines->at.rows * lines->at.columns);
     for (int32_t done = 0; done < strips; done += chunk) {
         const size_t at = (size_t)done * count;
         const int32_t some = strips - done < chunk ? strips - done : chunk;
@@ -147,6 +147,42 @@ static void compare_forming(struct bench *bench, enum form_kind kind, const stru
     planes_clear(&bins);
 }
 
+/* Forms cells alone, and among the empty cells of a grid that reaches all pixels. Alone they give a
+ * window of the same pixels, and outside it nothing is lost. */
+static void compare_window(struct bench *bench, enum form_kind kind)
+{
+    const struct line_grid all = {2, 3, {-20, 2 * ROWS + 40}, {-40, 3 * COLUMNS + 80}};
+    const struct line_grid some = {2, 3, {100, 20}, {150, 60}};
+    struct form_lines lines;
+    struct planes bins = make_bins(&some, 4);
+    struct planes around = planes_of(line_grid_cells(&all));
+    for (size_t i = 0; i < bins.count; i++) {
+        const size_t strip = 100 + 20 + i / 60, bin = 150 + 40 + i % 60;
+        for (int part = 0; part < 2; part++)
+            around.part[part][strip * (size_t)all.bins.count + bin] = bins.part[part][i];
+    }
+    begin_lines(&lines, bench, kind, &all);
+    struct planes whole = form_on_device(bench, &lines, &around, 1 << 20, 0);
+    form_lines_end(&lines);
+    assert_int_equal(whole.count, ROWS * COLUMNS);
+    begin_lines(&lines, bench, kind, &some);
+    struct planes window = form_on_device(bench, &lines, &bins, 1 << 20, 0);
+    const struct window at = lines.at;
+    form_lines_end(&lines);
+    assert_true(at.rows < ROWS && at.columns < COLUMNS);
+    for (int part = 0; part < 2; part++)
+        for (size_t i = 0; i < whole.count; i++) {
+            const size_t row = i / COLUMNS - at.first_row, column = i % COLUMNS - at.first_column;
+            const bool is_inside = row < at.rows && column < at.columns;
+            const float expected = is_inside ? window.part[part][row * at.columns + column] : 0.0f;
+            assert_true(whole.part[part][i] == expected);
+        }
+    planes_clear(&bins);
+    planes_clear(&around);
+    planes_clear(&whole);
+    planes_clear(&window);
+}
+
 static const struct line_grid corner = {7, 26, {-20, 150}, {-40, 333}};
 
 static void begin_bench(struct bench *bench)
@@ -196,6 +232,23 @@ TEST(test_images_of_varied_responses)
         bench.scene.sonar.kind = i == 1 ? SONJECT_SONAR_REAL : SONJECT_SONAR_SYNTHETIC;
         bench.scene.motion.params.random_rms_m = i == 2 ? 1e-3 : 0.0;
         compare_patch(&bench);
+    }
+    bench_close(&bench);
+}
+
+/* Hamming's side lobes end within the patch, and so does a long array's beam. */
+TEST(test_windows_hold_all_that_their_cells_reach)
+{
+    struct bench bench;
+    begin_bench(&bench);
+    bench.scene.sonar.response_window = SONJECT_WINDOW_HAMMING;
+    bench.scene.sonar.array_length_m = 6.0;
+    for (int i = 0; i < 3; i++) {
+        bench.scene.sonar.kind = i == 1 ? SONJECT_SONAR_REAL : SONJECT_SONAR_SYNTHETIC;
+        bench.scene.motion.params.random_rms_m = i == 2 ? 1e-3 : 0.0;
+        bench_ready(&bench);
+        compare_window(&bench, FORM_FIELD);
+        compare_window(&bench, FORM_TWO_ENERGIES);
     }
     bench_close(&bench);
 }
