@@ -205,12 +205,11 @@ static sonject_status learn(struct interview *interview, char **text)
     const sonject_status status = calibrate(interview, interview->context, options->channel, text);
     if (status != SONJECT_OK)
         return status;
-    const char *nadir = strstr(*text, "nadir_column:"), *end = strstr(*text, "\nmeasured:");
     interview->has_returns = strstr(*text, "\n  first_return:") != NULL;
-    interview->has_nadir = nadir && end && nadir < end; /* a later one is no key */
     const char *columns = strstr(*text, "\n  columns: ");
     interview->columns = columns ? strtod(columns + strlen("\n  columns: "), NULL) : NAN;
     interview->nadir_column = measured(*text, "nadir_column");
+    interview->has_nadir = isfinite(interview->nadir_column); /* one side's is the image's edge */
     interview->column_spacing_m = measured(*text, "column_spacing");
     interview->altitude_m = measured(*text, "altitude");
     interview->recorded_altitude_m = measured(*text, "recorded_altitude");

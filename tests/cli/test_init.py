@@ -60,6 +60,18 @@ def test_range_may_grow_to_the_left(sonject, image):
     assert thing["slant_range_m"] == pytest.approx(44 + 0.025 * (COLUMNS - 1 - thing["column"]), abs=0.05)
 
 
+def test_a_water_column_at_the_right_is_no_second_side(sonject, tmp_path):
+    """The image shows one side, whose range grows to the left. Its last column is the nearest."""
+    numpy.save(tmp_path / "left.npy", Made("amplitude", water=numpy.full(ROWS, 120)).numbers[:, ::-1])
+    answer = init(sonject, "left.npy", "--campaign", answers=["5 cm", "5 cm", "0 m left", "", "100 kHz", "30 kHz", ""])
+    assert answer.returncode == 0, answer.stderr
+    assert "side of the track" not in answer.stderr
+    scene = (tmp_path / "left.yaml").read_text()
+    for line in ("first_slant_range: 0 m", f"nadir_column: {COLUMNS - 1}", "side: port"):
+        assert f"    {line} # " in scene
+    assert (tmp_path / "left_campaign.yaml").read_text().count("- path: ") == 1
+
+
 def test_a_nadir_that_was_not_found_can_be_answered(sonject, image):
     """The image shows no water column. Range grows to both sides of the column that is named."""
     answers = [*ANSWERS[:2], "foo left", f"nadir {COLUMNS}", "nadir x", f"nadir {COLUMNS // 3}.5", "port", "2 m", *ANSWERS[4:]]
