@@ -227,7 +227,7 @@ bool write_scene(const struct interview *interview)
 
 /* ---- The campaign. */
 
-/* Facts about the scene from the text of sonject_check. */
+/* Facts about the side with the target, from the text of sonject_check. */
 struct checked {
     double rows, columns, along_m, first_m, last_m, altitude_m, top_m;
 };
@@ -238,7 +238,7 @@ static void read_checked(struct checked *checked, const char *text)
     for (const char *line = text; *line; line += *line == '\n') {
         const char *top = strstr(line, ", top ");
         const char *altitude = strstr(line, ", altitude ");
-        sscanf(line, "image %lf x %lf pixels", &checked->rows, &checked->columns);
+        sscanf(line, "patch %lf x %lf pixels", &checked->rows, &checked->columns);
         sscanf(line, " %lf m along-track, slant range %lf...%lf m", &checked->along_m,
                &checked->first_m, &checked->last_m);
         if (altitude)
