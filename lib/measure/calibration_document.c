@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "measure/calibration.h"
+#include "scene/geometry.h"
 #include "schema/keys.h"
 
 #define DIGITS        4
@@ -23,7 +24,7 @@ static const uint32_t family_kinds[] = {[CURVE_POWER] = SONJECT_TRANSFER_GAMMA,
                                         [CURVE_SCHLICK] = SONJECT_TRANSFER_SCHLICK};
 static const char *const side_words[] = {
     [WATER_AT_LEFT] = "one, range grows to the right",
-    [WATER_AT_RIGHT] = "one, range grows to the left",
+    [WATER_AT_RIGHT] = LEFTWARD_SIDES,
     [WATER_BETWEEN] = "two",
 };
 

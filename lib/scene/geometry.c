@@ -66,8 +66,10 @@ double first_return_range(const struct first_return_list *returns,
                           const sonject_geometry_params *geometry, uint64_t row)
 {
     const double columns = returns->columns[row / returns->every];
-    const double to_centre =
-        geometry->nadir_column > 0.0 ? 0.5 : 0.0; /* centre of the seabed's first pixel */
+    /* To the centre of the seabed's first pixel. Of one side that begins at the right, a scene may
+     * name the last column as the nadir, or the image's edge. */
+    const double beyond = returns->edge > 0.0 ? geometry->nadir_column - returns->edge : 0.0;
+    const double to_centre = geometry->nadir_column > 0.0 ? 0.5 + beyond : 0.0;
     return geometry->first_slant_range_m + (columns + to_centre) * geometry->column_spacing_m;
 }
 

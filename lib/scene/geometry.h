@@ -35,11 +35,16 @@ struct ping_table {
     size_t count;           /* 0, or at least 2 */
 };
 
+/* A calibration's `sides` of an image whose one side begins at the right edge. */
+#define LEFTWARD_SIDES "one, range grows to the left"
+
 /* The column at which the seabed begins in each `every`th row, counted from the nadir, or from the
  * first column where range does not begin at a nadir. All zeros: not known. */
 struct first_return_list {
     double *columns; /* owned */
     size_t count, every;
+    double edge; /* nadir that the columns count from, the image's right edge, if range grows to the
+                    left on one side; 0: another nadir */
 };
 
 /* The source of the altitude at a row. */

@@ -99,6 +99,9 @@ static sonject_status take_first_returns(struct report *report, const struct tre
 {
     const struct tree_entry *every = tree_find(measured, "first_return_every");
     const struct tree_entry *columns = tree_find(measured, "first_return");
+    const struct tree_entry *sides = tree_find(measured, "sides");
+    const struct tree_entry *width = tree_find(measured, "columns");
+    const bool is_leftward = sides && is_word(&sides->value, LEFTWARD_SIDES);
     const double step = every ? number_of_text(&every->value) : NAN;
     if (!columns || columns->value.kind != TREE_LIST || columns->value.count == 0 ||
         !(step >= 1.0 && step <= (double)PING_ROWS_MAX))
@@ -114,7 +117,9 @@ static sonject_status take_first_returns(struct report *report, const struct tre
         free(found);
         return SONJECT_OK;
     }
-    *returns = (struct first_return_list){found, columns->value.count, (size_t)step};
+    *returns = (struct first_return_list){found, columns->value.count, (size_t)step,
+                                          is_leftward && width ? number_of_text(&width->value) - 0.5
+                                                               : 0.0};
     return SONJECT_OK;
 }
 

@@ -257,6 +257,24 @@ def test_altitudes_by_first_returns_are_those_at_the_objects(sonject, tmp_path):
     assert found == {"value": pytest.approx(at[1], rel=0.02), "from": "calibration"}
 
 
+def test_first_returns_are_those_of_the_mirrored_image(sonject, tmp_path):
+    """Range 0 is at the centre of the nearest column, or at the image's edge, half a column before it."""
+    numbers = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
+    answers = {}
+    for name, pixels in ("right", numbers), ("left", numbers[:, ::-1]):
+        numpy.save(tmp_path / f"{name}.npy", pixels)
+        sonject.done("calibrate", f"{name}.npy", "-o", f"{name}.yaml")
+    for name, places in (("right", "first_slant_range: 0 m"), ("left", f"first_slant_range: 0 m, nadir_column: {COLUMNS - 1}"),
+                         ("edge", f"nadir_column: {COLUMNS - 0.5}")):
+        file = name.replace("edge", "left")
+        (tmp_path / "scene.yaml").write_text(
+            f"sonject: 1\ninput: {{path: {file}.npy, calibration: {file}.yaml, geometry: {{row_spacing: 10 cm, column_spacing: 2 cm, {places}}}}}\n"
+            "sonar: {altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}\nobjects: [{shape: sphere, diameter: 0.4 m}]\n")
+        answers[name] = altitude_of(sonject.done("check", "scene.yaml").stdout)
+    assert answers["left"] == answers["right"] == pytest.approx(2.4, abs=0.025)
+    assert answers["edge"] == pytest.approx(answers["right"] + 0.01, abs=1e-3)
+
+
 def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
