@@ -60,7 +60,8 @@ const struct verb form_verb = {
     .notes =
         "--set takes sonar.bandwidth, .pulse, .resolution, .response, .measured_response and\n"
         ".motion, and input.path for an image that was moved. The scene's files and image must\n"
-        "be those that were traced.",
+        "be those that were traced. Shadows and rough highlights keep the resolution and the\n"
+        "response that were traced.",
     .options_size = sizeof(struct form_options),
     .work = work,
 };

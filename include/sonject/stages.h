@@ -41,9 +41,11 @@ typedef struct sonject_form_params {
  * bandwidth wanted. Measured pixels stay as they are. Compared with a run at the other bandwidth,
  * the rays are the same only if that run has the same fine grid (lib/scene/patch_view.h). Otherwise
  * energies differ by the noise of two sets of rays, and the outermost pixels lack up to 2 % of
- * their energy. Errors: ARGUMENT, INPUT (not such a file, damaged, of another version, of another
- * scene or image; traced on a machine of another kind, whose mathematics differ; a key or value
- * that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
+ * their energy. Shadows and rough highlights keep the aspects that were traced; a note says so if
+ * the resolution or the response has others. Errors: ARGUMENT, INPUT (not such a file, damaged, of
+ * another version, of another scene or image; traced on a machine of another kind, whose
+ * mathematics differ; a key or value that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED,
+ * CANCELLED. */
 SONJECT_API sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
                                         const sonject_form_params *params,
                                         sonject_progress_function progress, void *user,

@@ -71,4 +71,8 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
  * strips and margins must be fine and wide enough. Errors: INPUT. */
 sonject_status check_response_fits(const struct tracer *tracer, const struct tracer *traced);
 
+/* Notes that impulses of shadows and rough surfaces were traced for other aspects, or for another
+ * weighting of them, than those of the tracer's response. No sum over impulses can change that. */
+void note_other_aspects(const struct tracer *tracer, const struct tracer *traced);
+
 #endif

@@ -203,6 +203,8 @@ static sonject_status inject_window(struct prepared *prepared, struct prepared *
     }
     if (is_other)
         status = check_response_fits(&job.tracer, &other.tracer);
+    if (is_other && status == SONJECT_OK && number == 0)
+        note_other_aspects(&job.tracer, &other.tracer);
     THEN(status, echoes_form(&echoes, &job.tracer, &job.patch.request, &source->tracer,
                              &source->patch.request));
     if (status == SONJECT_OK) {

@@ -8,6 +8,7 @@
 #include "scene/point_response.h"
 #include "trace/chains.h"
 #include "trace/checkpoint.h"
+#include "trace/fan.h"
 #include "trace/glints.h"
 #include "trace/multibounce.h"
 #include "trace/rough.h"
@@ -406,4 +407,21 @@ sonject_status check_response_fits(const struct tracer *tracer, const struct tra
     CHECK(check_bins(tracer, &grid, path));
     CHECK(check_strips(tracer, &grid, path));
     return check_glints(tracer, traced, path);
+}
+
+void note_other_aspects(const struct tracer *tracer, const struct tracer *traced)
+{
+    const struct point_response *response = &tracer->response, *before = &traced->response;
+    const double sine = aspects_sine(tracer), sine_before = aspects_sine(traced);
+    bool is_other = fabs(sine - sine_before) > ROUNDING * sine_before;
+    if (sine_before > 0.0) {
+        is_other |= response->terms != before->terms;
+        for (int term = 0; term < response->terms && !is_other; term++)
+            is_other = response->weights[term] != before->weights[term];
+    }
+    if (is_other)
+        report_note(tracer->report,
+                    "%s: shadows and rough highlights keep the resolution and the response that "
+                    "were traced: trace again for those of the new ones",
+                    traced->checkpoint->files[0]->path);
 }

@@ -155,6 +155,18 @@ def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, tr
     assert abs(formed.sum() / first.sum() - 1) < 0.02
 
 
+def test_shadows_that_keep_the_traced_aspects_are_noted(sonject, traced):
+    for change, is_noted in (
+        ("sonar.bandwidth=15 kHz", False),
+        ("sonar.response=rectangular", False),
+        ("sonar.response=hamming", True),
+        ("sonar.resolution=7 cm", True),
+    ):
+        answer = sonject("form", "impulses.sums", "-o", "noted", "--overwrite", "--set", change, folder=traced)
+        assert answer.returncode == 0
+        assert ("shadows and rough highlights keep" in answer.stderr) == is_noted, change
+
+
 def test_what_needs_a_new_trace_is_refused(sonject, traced):
     for change, *words in (
         ("sonar.bandwidth=31 kHz", "sonar.bandwidth", "31 kHz", "to 30 kHz", "trace again"),
