@@ -128,8 +128,13 @@ void file_protect(struct report *report, const char *path)
 sonject_status file_check_replaced(struct report *report, const char *path)
 {
     struct path_facts facts;
-    if (report->input_count == 0 || path_facts_read(path, &facts) != 0)
+    if (path_facts_read(path, &facts) != 0)
         return SONJECT_OK;
+    if (facts.kind == PATH_IS_DEVICE)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "%s: is a pipe or a device, and no file replaces it: choose another "
+                              "name",
+                              path);
     for (size_t i = 0; i < report->input_count && i < INPUTS_KEPT; i++)
         if (report->inputs[i].device == facts.device && report->inputs[i].number == facts.number)
             return report_failure(report, SONJECT_ERROR_ARGUMENT,

@@ -41,11 +41,13 @@ void folder_tidy(const char *path);
 /* Remembers a file that the call reads, which no result may replace. The last INPUTS_KEPT count. */
 void file_protect(struct report *report, const char *path);
 
-/* Refuses a path that leads to a protected file. Errors: ARGUMENT. */
+/* Refuses a path that leads to a protected file, or to a pipe or a device, which a rename would
+ * replace. Errors: ARGUMENT. */
 sonject_status file_check_replaced(struct report *report, const char *path);
 
 /* Flushes the file part to disk and renames it to path. On failure removes part; the message names
- * path and the reason (errno text). Errors: STORAGE, MEMORY, ARGUMENT (a protected file). */
+ * path and the reason (errno text). Errors: STORAGE, MEMORY, ARGUMENT (a path as
+ * file_check_replaced refuses). */
 sonject_status file_publish(struct report *report, const char *part, const char *path);
 
 /* Writes a head and bytes to path, whole or not at all. Errors: STORAGE, MEMORY. */

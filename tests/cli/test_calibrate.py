@@ -1,6 +1,7 @@
 """Tests of sonject calibrate, which measures a swath's properties on the swath itself."""
 
 import json
+import os
 import re
 
 import numpy
@@ -106,6 +107,15 @@ def test_where_nothing_clips_the_largest_number_is_the_ceiling(sonject, tmp_path
     assert "not_seen" in measured["full_scale"]
     room = 20 * numpy.log10(65535 / numpy.sqrt(numpy.mean(numbers.astype(float) ** 2)))
     assert measured["ceiling_over_seabed"]["value"] == pytest.approx(room, abs=0.3)
+
+
+def test_no_file_replaces_a_pipe(sonject, tmp_path):
+    """A rename would replace the name of a pipe or a device, even /dev/null, and its readers would hear nothing."""
+    numpy.save(tmp_path / "made.npy", Made("amplitude").numbers)
+    os.mkfifo(tmp_path / "pipe")
+    assert_refused(sonject("calibrate", "made.npy", "-o", "pipe"), 2, "pipe: is a pipe or a device")
+    assert (tmp_path / "pipe").is_fifo()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["made.npy", "pipe"]
 
 
 def test_complex_pixels_have_no_curve(sonject, tmp_path):
