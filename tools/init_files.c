@@ -276,12 +276,14 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
 }
 
 /* Adds grey levels for detectors, which read 8 bits: from well below shadows to a recording's
- * ceiling. */
+ * ceiling, which is the largest number where nothing clips. */
 static void add_grey(FILE *file, const struct interview *interview)
 {
-    const double white = 20.0 * log10(interview->full_scale / interview->largest_number);
+    const double ceiling =
+        isnan(interview->full_scale) ? interview->largest_number : interview->full_scale;
+    const double white = 20.0 * log10(ceiling / interview->largest_number);
     const double black = white - interview->ceiling_over_seabed_db - SHADOWS_DB;
-    if (*interview->other_calibration && interview->full_scale > 255.0 && isfinite(black))
+    if (*interview->other_calibration && ceiling > 255.0 && isfinite(black))
         fprintf(file,
                 "grey: [%.0f dB, %.0f dB] # black and white of 8 bit images; without this line "
                 "images have 16 bits\n",

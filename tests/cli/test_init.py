@@ -204,6 +204,20 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
     assert {category["name"] for category in notes["categories"]} == {"rock", "stone"}
 
 
+def test_a_line_where_nothing_clips_has_grey_levels_up_to_the_largest_number(sonject, tmp_path):
+    random = numpy.random.default_rng(3)
+    water = numpy.full(ROWS, 100)
+    made = [Made("amplitude", water=water, seed=seed) for seed in (1, 2)]
+    sides = [numpy.where(side.numbers < side.ceiling, side.numbers, random.integers(20000, 50000, side.numbers.shape))
+             for side in made]
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
+    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
+    assert answer.returncode == 0, answer.stderr
+    assert "  full_scale:\n    not_seen: " in (tmp_path / "line_calibration.yaml").read_text()
+    grey = re.search(r"^grey: \[(-\d+) dB, 0 dB\] ", (tmp_path / "line_campaign.yaml").read_text(), flags=re.M)
+    assert -70 < int(grey[1]) < -45  # 35 dB under the seabed
+
+
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """Runs all commands but the last, which needs scikit-learn: test_train_detector.py runs that one."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
