@@ -82,6 +82,9 @@ static void discard(const char *folder, const char *name)
         file_discard(path);
 }
 
+/* Folders beside the splits', whose files are numbered. */
+static const char *const numbered[] = {CALIBRATIONS_FOLDER, CHIPS_FOLDER, SWATHS_FOLDER};
+
 /* Removes the images and documents, campaign.json last. */
 static void remove_all(const struct data_set *set)
 {
@@ -93,7 +96,6 @@ static void remove_all(const struct data_set *set)
     for (size_t i = 0; i < count; i++)
         discard(set->folder, documents[i]);
     discard(set->folder, "times.json");
-    static const char *const numbered[] = {CALIBRATIONS_FOLDER, CHIPS_FOLDER, SWATHS_FOLDER};
     for (size_t i = 0; i < COUNT(numbered); i++)
         if (path_in(&ignored, path, set->folder, "%s", numbered[i]) == SONJECT_OK)
             remove_numbered(&ignored, path);
@@ -539,6 +541,9 @@ sonject_status data_set_finish(struct data_set *set)
         if (path_in(&silent, path, set->folder, "%s", set->split_names[i]) == SONJECT_OK)
             folder_tidy(path);
     }
+    for (size_t i = 0; i < COUNT(numbered); i++)
+        if (path_in(&silent, path, set->folder, "%s", numbered[i]) == SONJECT_OK)
+            folder_tidy(path);
     folder_tidy(set->folder);
     return SONJECT_OK;
 }

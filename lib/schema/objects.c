@@ -437,8 +437,8 @@ static const struct field object_fields[] = {
     SHAPE_FIELDS,
     {"mesh", "number in the scene", HIDDEN, COUNT32(mesh, 0, 0)},
     {"position",
-     "ground point under the object's centre: centre (of the patch), {along_track: , slant_range: "
-     "} or {row: , column: }",
+     "ground point under the object's centre, or the origin of its parts: centre (of the patch), "
+     "{along_track: , slant_range: } or {row: , column: }",
      CENTRE_WORD, .section = &position_section},
     TURN_FIELDS("heading of the nose, from along-track towards range"),
     {"burial", "kind", HIDDEN, WORD(burial_kind) = {"depth", "fraction", "proud"}},

@@ -448,6 +448,24 @@ def test_killed_four_times_it_goes_on(command, ground, environment, whole):
     assert contents(ground / "killed") == contents(whole)
 
 
+def test_what_a_killed_one_had_not_finished_is_removed(command, ground, environment, whole):
+    """Its files in the making are named after the host and the process."""
+    arguments = ["campaign", "campaign.yaml", "-o", "cut"]
+    process = subprocess.Popen([COMMAND, *arguments], cwd=ground, env=environment, stderr=subprocess.PIPE)
+    unfinished = []
+    while process.poll() is None and not unfinished:
+        unfinished = [path.name for path in files_below(ground / "cut") if ".part" in path.name]
+    process.kill()
+    process.communicate()
+    owner = re.search(r"\.[0-9a-f]{8}-\d+-[0-9a-f]{16}\.part", unfinished[0]).group()
+    for name in ("chips", "swaths", "calibrations"):
+        (ground / "cut" / name).mkdir(exist_ok=True)
+        (ground / "cut" / name / f"0.png{owner}.png").write_bytes(b"half")
+    assert command(*arguments).returncode == 0
+    assert not [path for path in files_below(ground / "cut") if ".part" in path.name]
+    assert contents(ground / "cut") == contents(whole)
+
+
 def stop_after_an_image(ground, environment, name):
     """Sends SIGTERM once the folder has more than one image's files. Returns exit code and message."""
     process = subprocess.Popen([COMMAND, "campaign", "campaign.yaml", "-o", name], cwd=ground,
