@@ -209,7 +209,7 @@ static sonject_status learn(struct interview *interview, char **text)
     const char *columns = strstr(*text, "\n  columns: ");
     interview->columns = columns ? strtod(columns + strlen("\n  columns: "), NULL) : NAN;
     interview->nadir_column = measured(*text, "nadir_column");
-    interview->has_nadir = isfinite(interview->nadir_column); /* one side's is the image's edge */
+    interview->has_nadir = isfinite(interview->nadir_column); /* of two sides alone */
     interview->column_spacing_m = measured(*text, "column_spacing");
     interview->altitude_m = measured(*text, "altitude");
     interview->recorded_altitude_m = measured(*text, "recorded_altitude");

@@ -168,6 +168,12 @@ void tell_calibration_doubts(struct report *report, const struct scene *scene)
                     "%s was measured on the %s side, and this is %s: calibrate that (sonject "
                     "calibrate --channel %s), or write input.calibration: auto",
                     scene->calibration, scene->calibrated_side, side, side);
+    if (scene->calibrated_leftward && !*scene->calibrated_side &&
+        scene->geometry.nadir_column <= 0.0)
+        report_note(report,
+                    "%s found the water column at the image's right edge, and here range grows to "
+                    "the right: if it grows to the left, give input.geometry.nadir_column",
+                    scene->calibration);
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE &&
         scene->altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0)
         report_note(

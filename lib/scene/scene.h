@@ -63,6 +63,7 @@ struct scene {
     char *calibration;        /* owned; the file that input.calibration names; NULL: none */
     char *calibrated;         /* owned; the keys taken from that file, one per line; NULL: none */
     char calibrated_side[12]; /* side of the calibration's image, as keys name it; "": not given */
+    bool calibrated_leftward; /* range grows to the left in the calibration's image of one side */
     double recorded_over_first_return; /* median of recorded altitudes over first returns; 0: not
                                           given */
     struct first_return_list first_returns; /* the whole swath's, from the calibration */

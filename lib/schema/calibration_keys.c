@@ -135,12 +135,14 @@ static bool asks_for_returns(const struct tree_node *scene)
 static void take_measured(struct scene *scene, const struct tree_node *measured)
 {
     const struct tree_entry *side = tree_find(measured, "side");
+    const struct tree_entry *sides = tree_find(measured, "sides");
     const struct tree_entry *altitude = tree_find(measured, "recorded_altitude");
     const struct tree_entry *share =
         altitude ? tree_find(&altitude->value, "over_first_return") : NULL;
     const double number = share ? number_of_text(&share->value) : NAN;
     if (side && side->value.kind == TREE_TEXT && side->value.text)
         snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
+    scene->calibrated_leftward = sides && is_word(&sides->value, LEFTWARD_SIDES);
     if (!isnan(number))
         scene->recorded_over_first_return = number;
 }

@@ -275,12 +275,15 @@ def test_first_returns_are_those_of_the_mirrored_image(sonject, tmp_path):
         numpy.save(tmp_path / f"{name}.npy", pixels)
         sonject.done("calibrate", f"{name}.npy", "-o", f"{name}.yaml")
     for name, places in (("right", "first_slant_range: 0 m"), ("left", f"first_slant_range: 0 m, nadir_column: {COLUMNS - 1}"),
-                         ("edge", f"nadir_column: {COLUMNS - 0.5}")):
-        file = name.replace("edge", "left")
+                         ("edge", f"nadir_column: {COLUMNS - 0.5}"), ("mistaken", "first_slant_range: 0 m")):
+        file = "right" if name == "right" else "left"
         (tmp_path / "scene.yaml").write_text(
             f"sonject: 1\ninput: {{path: {file}.npy, calibration: {file}.yaml, geometry: {{row_spacing: 10 cm, column_spacing: 2 cm, {places}}}}}\n"
             "sonar: {altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}\nobjects: [{shape: sphere, diameter: 0.4 m}]\n")
-        answers[name] = altitude_of(sonject.done("check", "scene.yaml").stdout)
+        answer = sonject.done("check", "scene.yaml")
+        answers[name] = altitude_of(answer.stdout)
+        is_noted = "left.yaml found the water column at the image's right edge, and here range grows to the right" in answer.stdout
+        assert is_noted == (name == "mistaken")
     assert answers["left"] == answers["right"] == pytest.approx(2.4, abs=0.025)
     assert answers["edge"] == pytest.approx(answers["right"] + 0.01, abs=1e-3)
 
