@@ -95,13 +95,11 @@ static double number_of_text(const struct tree_node *node)
 
 /* Takes the first returns of a whole swath, if the file has all of them as columns. */
 static sonject_status take_first_returns(struct report *report, const struct tree_node *measured,
-                                         struct first_return_list *returns)
+                                         bool is_leftward, struct first_return_list *returns)
 {
     const struct tree_entry *every = tree_find(measured, "first_return_every");
     const struct tree_entry *columns = tree_find(measured, "first_return");
-    const struct tree_entry *sides = tree_find(measured, "sides");
     const struct tree_entry *width = tree_find(measured, "columns");
-    const bool is_leftward = sides && is_word(&sides->value, LEFTWARD_SIDES);
     const double step = every ? number_of_text(&every->value) : NAN;
     if (!columns || columns->value.kind != TREE_LIST || columns->value.count == 0 ||
         !(step >= 1.0 && step <= (double)PING_ROWS_MAX))
@@ -167,7 +165,7 @@ static sonject_status take_keys(struct layer *layer, const char *file)
             take_measured(scene, &entry->value);
             if (asks_for_returns(&layer->tree->root))
                 CHECK(take_first_returns(layer->reader->report, &entry->value,
-                                         &scene->first_returns));
+                                         scene->calibrated_leftward, &scene->first_returns));
         }
         if (strcmp(entry->key, "sonject_calibration") == 0 || strcmp(entry->key, "measured") == 0)
             continue;
