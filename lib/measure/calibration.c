@@ -22,9 +22,8 @@
 #define EXPONENT_MOST     4.0
 
 /* Texture. */
-#define TEXTURE_FIRST_LAG 4 /* speckle is uncorrelated from this lag on */
-#define TEXTURE_END_LAG   8
-#define TEXTURE_MOST      0.6 /* largest share of the variance of log intensity */
+#define TEXTURE_LAGS 4
+#define TEXTURE_MOST 0.6 /* largest share of the variance of log intensity */
 
 static const char too_small[] =
     "fewer than 12 tiles of 16 x 16 pixels are usable: the others are blank, constant or clipped";
@@ -81,6 +80,26 @@ static void find_ceiling(const struct stored_swath *swath, struct calibration *f
 
 /* ---- The curve, and the speckle with it. */
 
+/* Returns the covariance of a tile's logarithms along an axis, at lags where speckle of this grain
+ * is uncorrelated. */
+static double texture_covariance(const double *logs, size_t side, double mean, size_t grain,
+                                 int axis)
+{
+    const size_t apart = axis == 0 ? side : 1, next = axis == 0 ? 1 : side;
+    const size_t first = 2 + 2 * grain;
+    double sum = 0.0;
+    for (size_t lag = first; lag < first + TEXTURE_LAGS; lag++) {
+        double of_lag = 0.0;
+        for (size_t i = 0; i < side; i++)
+            for (size_t k = 0; k + lag < side; k++) {
+                const double *pixel = logs + i * next + k * apart;
+                of_lag += (pixel[0] - mean) * (pixel[lag * apart] - mean);
+            }
+        sum += of_lag / (double)(side * (side - lag));
+    }
+    return sum / TEXTURE_LAGS;
+}
+
 /* Finds texture's share of the variance of log intensity, from the covariance of pixels some way
  * apart. The lesser of both axes counts, since bands along one axis are no texture. error: the
  * standard error of the share. */
@@ -96,7 +115,7 @@ static sonject_status texture_share(struct report *report, const struct calibrat
     const double least = tiles->edges[tiles->edges[0] > 0.0 || family == CURVE_DECIBEL ? 0 : 1];
     CHECK_MEMORY(report, logs, "a calibration");
     for (size_t tile = 0; tile < tiles->count; tile++) {
-        double mean = 0.0, own = 0.0, along[2] = {0.0, 0.0};
+        double mean = 0.0, own = 0.0;
         for (size_t i = 0; i < pixels; i++) {
             const size_t at =
                 (tiles->rows[tile] + i / side) * swath->columns + tiles->columns[tile] + i % side;
@@ -107,20 +126,12 @@ static sonject_status texture_share(struct report *report, const struct calibrat
         }
         for (size_t i = 0; i < pixels; i++)
             own += (logs[i] - mean) * (logs[i] - mean) / (double)pixels;
-        for (size_t lag = TEXTURE_FIRST_LAG; lag < TEXTURE_END_LAG; lag++)
-            for (size_t i = 0; i < side; i++)
-                for (size_t k = 0; k + lag < side; k++) {
-                    const double a = logs[i * side + k], b = logs[i * side + k + lag];
-                    const double c = logs[k * side + i], d = logs[(k + lag) * side + i];
-                    const double weight =
-                        1.0 / (double)((TEXTURE_END_LAG - TEXTURE_FIRST_LAG) * side * (side - lag));
-                    along[0] += weight * (c - mean) * (d - mean);
-                    along[1] += weight * (a - mean) * (b - mean);
-                }
         variance += own;
         for (int axis = 0; axis < 2; axis++) {
-            sums[axis] += along[axis];
-            squares[axis] += along[axis] * along[axis];
+            const double covariance =
+                texture_covariance(logs, side, mean, found->grain[axis], axis);
+            sums[axis] += covariance;
+            squares[axis] += covariance * covariance;
         }
     }
     free(logs);
@@ -289,7 +300,7 @@ static void tell_curve(struct calibration *found)
     const struct curve_fit *fit = &found->fits[found->family];
     found->parameter.value = fit->parameter;
     found->parameter.error = fit->parameter * fit->parameter_error;
-    found->shape.how = "correlation of pixels 4 to 7 apart in plain tiles; other ground has more";
+    found->shape.how = "correlation of plain tiles beyond the speckle's own; other ground has more";
     found->looks.value = fmax(1.0, found->looks.value);
     if (fit->texture > 0.0) {
         found->shape.value = 1.0 / fit->texture;
@@ -374,7 +385,7 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
                                       const struct stored_swath *swath)
 {
     const double ceiling = found->full_scale.unseen ? INFINITY : found->full_scale.value;
-    CHECK(plain_tiles_init(&found->tiles, report, swath, &found->returns, ceiling));
+    CHECK(plain_tiles_init(&found->tiles, report, swath, &found->returns, found->grain, ceiling));
     if (found->tiles.count >= TILES_LEAST && found->tiles.edge_count >= EDGES_LEAST)
         return find_curve(report, found, swath);
     fill_unseen(found);
@@ -438,6 +449,7 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
 {
     struct calibration *found = calibration;
     memset(found, 0, sizeof *found);
+    found->grain[0] = found->grain[1] = 1;
     found->rows = swath->rows;
     found->columns = swath->columns;
     found->row_spacing_m = geometry->row_spacing_m;
@@ -447,8 +459,9 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
     find_ceiling(swath, found);
     sonject_status status = find_from_tiles(report, found, swath);
     if (status == SONJECT_OK && !found->transfer_kind.unseen) {
-        status = find_water(report, found, swath);
-        if (status == SONJECT_OK && found->returns.sides != WATER_UNSEEN) {
+        status = find_water_and_grain(report, found, swath);
+        const bool is_coarse = found->grain[0] > 1 || found->grain[1] > 1;
+        if (status == SONJECT_OK && (is_coarse || found->returns.sides != WATER_UNSEEN)) {
             forget_curve(found);
             status = find_from_tiles(report, found, swath);
         }

@@ -96,11 +96,13 @@ double curve_log_intensity(enum curve_family family, double parameter, double fu
 double curve_value(enum curve_family family, double parameter, double full_scale,
                    double log_intensity);
 
-/* Chooses tiles outside the water column and counts their numbers in cells. ceiling: the largest
- * number, infinite if nothing clips. Errors: MEMORY. */
+/* Chooses tiles outside the water column and counts their numbers in cells. grain: rows and columns
+ * of a grain of speckle, 1...GRAIN_MOST. ceiling: the largest number, infinite if nothing clips.
+ * Errors: MEMORY. */
+#define GRAIN_MOST 4
 sonject_status plain_tiles_init(struct plain_tiles *tiles, struct report *report,
                                 const struct stored_swath *swath, const struct first_returns *water,
-                                double ceiling);
+                                const size_t grain[2], double ceiling);
 void plain_tiles_clear(struct plain_tiles *tiles);
 
 struct calibration {
@@ -113,6 +115,7 @@ struct calibration {
     struct curve_fit fits[CURVE_FAMILIES];
     enum curve_family family;
     struct plain_tiles tiles;
+    size_t grain[2]; /* rows and columns of a grain of speckle, rounded down, 1...GRAIN_MOST */
     double largest_number; /* that the swath's type holds */
     struct estimate full_scale, clipped, looks, shape;
     struct estimate room_db;        /* ceiling over the seabed in the middle columns, dB */

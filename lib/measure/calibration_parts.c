@@ -16,6 +16,9 @@
 #define UNEVEN_MOST          2.0   /* largest variance of a tile, over the median variance */
 #define PEAK_MOST            14.0  /* over a tile's mean; brighter pixels are no speckle */
 
+/* Grain. */
+#define TAIL_MOST 0.15 /* largest correlation of speckle two widths away; ripples have more */
+
 /* Noise floor. */
 #define ROUNDING_MOST 0.05 /* most that rounding may add, as a share of the floor */
 #define LOWEST_SHARE  0.05 /* most pixels at the lowest number, as a share */
@@ -336,8 +339,19 @@ static void tell_water(struct calibration *found, double *scratch)
     found->altitude_m.error = fmax(error, 0.3) * found->column_spacing_m;
 }
 
-sonject_status find_water(struct report *report, struct calibration *found,
-                          const struct stored_swath *swath)
+/* Finds the grain along an axis: the response's width, if the speckle and not ripples tell it. */
+static sonject_status find_grain(struct report *report, struct calibration *found,
+                                 const struct stored_swath *swath, const float *intensity, int axis)
+{
+    struct estimate width = {.unseen = NULL};
+    CHECK(find_response(report, found, swath, intensity, axis, &width));
+    const size_t grain = width.unseen ? 1 : (size_t)fmin(GRAIN_MOST, fmax(1.0, width.value));
+    found->grain[axis] = found->correlation[axis][2 * grain] < TAIL_MOST ? grain : 1;
+    return SONJECT_OK;
+}
+
+sonject_status find_water_and_grain(struct report *report, struct calibration *found,
+                                    const struct stored_swath *swath)
 {
     struct first_returns *returns = &found->returns;
     float *intensity = allocate_array(swath->rows, swath->columns * sizeof *intensity);
@@ -347,6 +361,8 @@ sonject_status find_water(struct report *report, struct calibration *found,
         intensity && scratch ? SONJECT_OK : report_out_of_memory(report, "a calibration");
     THEN(status, fill_intensities(report, found, swath, median_level(found, scratch), intensity));
     THEN(status, first_returns_find(returns, report, intensity, found->rows, found->columns));
+    THEN(status, find_grain(report, found, swath, intensity, 0));
+    THEN(status, find_grain(report, found, swath, intensity, 1));
     if (status == SONJECT_OK)
         tell_water(found, scratch);
     free(intensity);

@@ -13,9 +13,9 @@ double curve_full_scale(const struct calibration *calibration, const struct stor
 double pixel_log_intensity(const struct calibration *calibration, const struct stored_swath *swath,
                            double value);
 
-/* Finds the water column and what follows from it. Errors: MEMORY. */
-sonject_status find_water(struct report *report, struct calibration *found,
-                          const struct stored_swath *swath);
+/* Finds the water column with what follows from it, and the speckle's grain. Errors: MEMORY. */
+sonject_status find_water_and_grain(struct report *report, struct calibration *found,
+                                    const struct stored_swath *swath);
 
 /* Finds the other parts. Errors: MEMORY. */
 sonject_status find_parts(struct report *report, struct calibration *found,

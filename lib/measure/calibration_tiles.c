@@ -38,12 +38,12 @@ static int compare_places(const void *a, const void *b)
     return x->column < y->column ? -1 : x->column > y->column;
 }
 
-static void copy_part(const struct stored_swath *swath, size_t row, size_t column, size_t side,
-                      float *part)
+static void copy_part(const struct stored_swath *swath, size_t row, size_t column, size_t rows,
+                      size_t columns, float *part)
 {
-    for (size_t i = 0; i < side; i++)
-        memcpy(part + i * side, swath->values + (row + i) * swath->columns + column,
-               side * sizeof *part);
+    for (size_t i = 0; i < rows; i++)
+        memcpy(part + i * columns, swath->values + (row + i) * swath->columns + column,
+               columns * sizeof *part);
 }
 
 static float median_of_floats(float *values, size_t count)
@@ -52,22 +52,41 @@ static float median_of_floats(float *values, size_t count)
     return 0.5f * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* Returns the deviation of the medians of a tile's parts, over the spread of its pixels. This rank
- * statistic hardly depends on the curve. Infinite for a tile that is blank, clipped or constant. */
+/* Returns the first row or column of a window in the middle of which a tile lies, as far as the
+ * swath has room. */
+static size_t window_start(size_t first, size_t side, size_t window, size_t end)
+{
+    const size_t before = (window - side) / 2;
+    const size_t start = first > before ? first - before : 0;
+    return start + window > end ? end - window : start;
+}
+
+/* Returns the deviation of the medians of the parts of a window about a tile, over the spread of
+ * the tile's pixels. This rank statistic hardly depends on the curve. The window grows with the
+ * grain. In parts of few grains chance would decide, and the tiles chosen would have less speckle
+ * than others. Infinite for a tile that is blank, clipped or constant. */
 static float unevenness(const struct stored_swath *swath, size_t row, size_t column, size_t side,
-                        double ceiling)
+                        const size_t grain[2], double ceiling)
 {
     float pixels[TILE_SIDE * TILE_SIDE];
-    const size_t count = side * side, part = side / PARTS;
+    const size_t count = side * side;
+    const size_t sizes[2] = {swath->rows, swath->columns};
+    size_t part[2], first[2] = {row, column};
+    for (int axis = 0; axis < 2; axis++) {
+        const size_t wanted = grain[axis] * side;
+        part[axis] = (wanted < sizes[axis] ? wanted : sizes[axis]) / PARTS;
+        first[axis] = window_start(first[axis], side, PARTS * part[axis], sizes[axis]);
+    }
     double sum = 0.0, squares = 0.0;
     size_t blank = 0, clipped = 0;
     for (size_t i = 0; i < PARTS * PARTS; i++) {
-        copy_part(swath, row + i / PARTS * part, column + i % PARTS * part, part, pixels);
-        const double median = median_of_floats(pixels, part * part);
+        copy_part(swath, first[0] + i / PARTS * part[0], first[1] + i % PARTS * part[1], part[0],
+                  part[1], pixels);
+        const double median = median_of_floats(pixels, part[0] * part[1]);
         sum += median;
         squares += median * median;
     }
-    copy_part(swath, row, column, side, pixels);
+    copy_part(swath, row, column, side, side, pixels);
     for (size_t i = 0; i < count; i++) {
         blank += pixels[i] == 0.0f;
         clipped += (double)pixels[i] >= ceiling;
@@ -84,7 +103,7 @@ static float unevenness(const struct stored_swath *swath, size_t row, size_t col
 /* Examines tiles all over the swath. *count gets the number of usable ones. NULL: memory is out. */
 static struct candidate *find_candidates(const struct stored_swath *swath,
                                          const struct first_returns *water, size_t side,
-                                         double ceiling, size_t *count)
+                                         const size_t grain[2], double ceiling, size_t *count)
 {
     const size_t across = swath->columns / side, all = swath->rows / side * across;
     const size_t tried = all < CANDIDATES_MOST ? all : CANDIDATES_MOST;
@@ -98,7 +117,7 @@ static struct candidate *find_candidates(const struct stored_swath *swath,
         const struct water_place place = {next->row, next->column, side, side};
         next->unevenness = first_returns_cover(water, &place, swath->columns)
                                ? INFINITY
-                               : unevenness(swath, next->row, next->column, side, ceiling);
+                               : unevenness(swath, next->row, next->column, side, grain, ceiling);
         *count += isfinite(next->unevenness) ? 1 : 0;
     }
     return list;
@@ -120,7 +139,8 @@ static sonject_status choose_edges(struct plain_tiles *tiles, struct report *rep
     size_t wanted_count = 0;
     CHECK_MEMORY(report, sorted, "a calibration");
     for (size_t i = 0; i < tiles->count; i++)
-        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, sorted + i * pixels);
+        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, tiles->side,
+                  sorted + i * pixels);
     qsort(sorted, count, sizeof *sorted, compare_floats);
     for (size_t i = 0; i < 4; i++)
         wanted[wanted_count++] = tails[i];
@@ -162,7 +182,7 @@ static sonject_status fill_cells(struct plain_tiles *tiles, struct report *repor
     tiles->counts = allocate_array(tiles->count, cells * sizeof *tiles->counts);
     CHECK_MEMORY(report, tiles->counts, "a calibration");
     for (size_t i = 0; i < tiles->count; i++) {
-        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, values);
+        copy_part(swath, tiles->rows[i], tiles->columns[i], tiles->side, tiles->side, values);
         for (size_t k = 0; k < pixels; k++)
             tiles->counts[i * cells + cell_of(tiles, (double)values[k])]++;
     }
@@ -171,14 +191,14 @@ static sonject_status fill_cells(struct plain_tiles *tiles, struct report *repor
 
 sonject_status plain_tiles_init(struct plain_tiles *tiles, struct report *report,
                                 const struct stored_swath *swath, const struct first_returns *water,
-                                double ceiling)
+                                const size_t grain[2], double ceiling)
 {
     memset(tiles, 0, sizeof *tiles);
     tiles->side = TILE_SIDE;
     if (swath->rows / TILE_SIDE * (swath->columns / TILE_SIDE) < TILES_FEW)
         tiles->side = TILE_SIDE_SMALL;
     size_t count;
-    struct candidate *list = find_candidates(swath, water, tiles->side, ceiling, &count);
+    struct candidate *list = find_candidates(swath, water, tiles->side, grain, ceiling, &count);
     CHECK_MEMORY(report, list, "a calibration");
     qsort(list, count, sizeof *list, compare_candidates);
     const size_t plain = count < TILES_FEW ? count : count / 2 < TILES_FEW ? TILES_FEW : count / 2;

@@ -18,19 +18,19 @@ def _smooth(noise, deviation):
     return numpy.fft.ifft2(numpy.fft.fft2(noise) * weights)
 
 
-def _field(random, shape):
-    """Returns a circular Gaussian field of mean square 1, as a Gaussian response of WIDTH makes it."""
+def _field(random, shape, width=WIDTH):
+    """Returns a circular Gaussian field of mean square 1, as a Gaussian response of that width makes it."""
     noise = random.standard_normal(shape) + 1j * random.standard_normal(shape)
-    field = _smooth(noise, WIDTH / (2 * numpy.log(2) ** 0.5))
+    field = _smooth(noise, width / (2 * numpy.log(2) ** 0.5))
     return field / numpy.mean(numpy.abs(field) ** 2) ** 0.5
 
 
-def speckle(seed, textures=None, gain_db=0.0, schlick=1.0):
+def speckle(seed, textures=None, gain_db=0.0, schlick=1.0, width=WIDTH):
     """Returns numbers of one level by a Schlick curve. Intensities are K distributed with the shape
-    textures / 2. The gain changes by gain_db over the columns."""
+    textures / 2. The gain changes by gain_db over the columns. width: the response's, pixels."""
     random = numpy.random.default_rng(seed)
     shape = (512, 600)
-    intensity = numpy.abs(_field(random, shape)) ** 2 * 10 ** (gain_db / 10 * numpy.arange(600) / 600)
+    intensity = numpy.abs(_field(random, shape, width)) ** 2 * 10 ** (gain_db / 10 * numpy.arange(600) / 600)
     if textures:
         squares = (_smooth(random.standard_normal(shape), 10.0).real ** 2 for _ in range(textures))
         intensity *= sum(square / square.mean() for square in squares) / textures
@@ -58,10 +58,10 @@ def sidescan(shadow_db=None, water_db=-30.0, water=100, seed=1):
 class Made:
     """A made swath. `numbers` are its stored pixels of 8 or 16 bits. A calibration must find the rest."""
 
-    def __init__(self, kind, looks=1, share=0.9, floor_db=-25.0, seed=1, bits=16, water=None):
+    def __init__(self, kind, looks=1, share=0.9, floor_db=-25.0, seed=1, bits=16, water=None, width=WIDTH):
         """share: the ceiling over the type's largest number. water: the first return of each row, in
-        columns from the left."""
-        self.kind, self.looks = kind, looks
+        columns from the left. width: the response's, pixels."""
+        self.kind, self.looks, self.width = kind, looks, width
         self.parameter, level = KINDS[kind]
         self.ceiling = round(share * (2**bits - 1))
         random = numpy.random.default_rng(seed)
@@ -81,8 +81,8 @@ class Made:
             lit[columns < first] = 0
         noise = 10 ** (floor_db / 10)
         intensity = sum(
-            numpy.abs(_field(random, shape) * (seabed * lit) ** 0.5
-                      + _field(random, shape) * noise**0.5) ** 2 for _ in range(looks)) / looks
+            numpy.abs(_field(random, shape, width) * (seabed * lit) ** 0.5
+                      + _field(random, shape, width) * noise**0.5) ** 2 for _ in range(looks)) / looks
         amplitude = level * intensity**0.5
         if kind == "decibel":  # 80 dB from the lowest number to full scale
             self.parameter = 80.0 / self.ceiling
@@ -109,8 +109,8 @@ def deviations(made, measured):
     found = {
         "looks": (measured["looks"], made.looks),
         "noise_floor": (measured["noise_floor"], made.floor_db),
-        "response_along_track": (measured["response_along_track"], WIDTH),
-        "response_range": (measured["response_range"], WIDTH),
+        "response_along_track": (measured["response_along_track"], made.width),
+        "response_range": (measured["response_range"], made.width),
     }
     if made.kind in ("gamma", "schlick", "decibel"):
         found["parameter"] = (measured["transfer"]["parameter"], made.parameter)

@@ -37,6 +37,21 @@ def test_a_made_swath_tells_what_made_it(kind, sonject, tmp_path):
     assert found["injection"]["noise_floor"] == f"{floor:g} dB"
 
 
+def test_wide_speckle_tells_what_made_it(sonject, tmp_path):
+    """Tests speckle 3 pixels wide. A tile holds few grains. If chance chose tiles with little speckle, all curves
+    would err by four standard errors to one side, and responses to the other."""
+    found = []
+    for seed in (1, 2):
+        for kind in ("gamma", "schlick", "decibel"):
+            made = Made(kind, seed=seed, width=3.0)
+            numpy.save(tmp_path / "made.npy", made.numbers)
+            measured = calibrated(sonject, "made.npy")["measured"]
+            found.append({name: deviation for name, (deviation, _) in deviations(made, measured).items()})
+            assert all(abs(deviation) < 4 for deviation in found[-1].values()), (kind, found[-1])
+    for name in ("parameter", "response_along_track", "response_range"):
+        assert abs(numpy.mean([one[name] for one in found])) < 2, (name, found)
+
+
 def test_the_same_swath_tells_the_same_in_every_form(sonject, tmp_path):
     made = Made("schlick", bits=8)
     numpy.save(tmp_path / "made.npy", made.numbers)
