@@ -86,8 +86,8 @@ sonject_status params_give(struct report *report, void *to, const void *from, si
 sonject_status find_input(struct report *report, const struct scene *scene,
                           const sonject_pixels *pixels, struct swath *swath);
 
-/* Takes a caller's pixels, linear; those with a transfer function also as stored. For swath_close,
- * also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
+/* Takes a caller's pixels, linear; those with a transfer function also as stored. Linear pixels may
+ * stay the caller's. For swath_close, also on failure. Errors: ARGUMENT, INPUT, MEMORY. */
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                            struct swath *swath);
 

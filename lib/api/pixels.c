@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "api/handles.h"
@@ -10,8 +11,9 @@ static const enum pixel_type types[] = {[SONJECT_PIXELS_AMPLITUDE] = PIXEL_FLOAT
                                         [SONJECT_PIXELS_UINT8] = PIXEL_UINT8,
                                         [SONJECT_PIXELS_UINT16] = PIXEL_UINT16};
 
-/* Copies the caller's structure to *taken, and its rows, packed, to swath->stored. */
-static sonject_status pack_pixels(struct report *report, const sonject_pixels *pixels,
+/* Copies the caller's structure to *taken, and its rows, packed, to swath->stored. borrows: linear
+ * rows that are packed stay where they are, as swath->pixels. */
+static sonject_status pack_pixels(struct report *report, const sonject_pixels *pixels, bool borrows,
                                   sonject_pixels *taken, struct swath *swath)
 {
     memset(swath, 0, sizeof *swath);
@@ -38,6 +40,12 @@ static sonject_status pack_pixels(struct report *report, const sonject_pixels *p
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "the row stride of %zu bytes is shorter than a row of %zu", stride,
                               row_bytes);
+    const bool is_linear = taken->kind <= SONJECT_PIXELS_COMPLEX && !taken->transfer;
+    if (borrows && is_linear && stride == row_bytes && (uintptr_t)taken->data % number == 0) {
+        swath->pixels = (float *)taken->data;
+        swath->borrows_pixels = true;
+        return SONJECT_OK;
+    }
     swath->stored = allocate_array((size_t)taken->rows, row_bytes);
     CHECK_MEMORY(report, swath->stored, "the patch");
     for (size_t row = 0; row < taken->rows; row++)
@@ -69,7 +77,7 @@ static sonject_status read_transfer(struct report *report, uint32_t kind, const 
 sonject_status take_stored(struct report *report, const sonject_pixels *pixels, struct swath *swath)
 {
     sonject_pixels taken;
-    CHECK(pack_pixels(report, pixels, &taken, swath));
+    CHECK(pack_pixels(report, pixels, false, &taken, swath));
     if (taken.transfer)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "calibrate finds the transfer function itself: take transfer out");
@@ -79,12 +87,13 @@ sonject_status take_stored(struct report *report, const sonject_pixels *pixels, 
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels, struct swath *swath)
 {
     sonject_pixels taken;
-    CHECK(pack_pixels(report, pixels, &taken, swath));
+    CHECK(pack_pixels(report, pixels, true, &taken, swath));
     CHECK(read_transfer(report, taken.kind, taken.transfer, &swath->transfer));
     swath->is_whole = swath->layout.type != PIXEL_FLOAT32;
     if (taken.transfer)
         return swath_linearise(report, NULL, swath);
-    swath->pixels = swath->stored;
+    if (!swath->borrows_pixels)
+        swath->pixels = swath->stored;
     swath->stored = NULL;
     return SONJECT_OK;
 }

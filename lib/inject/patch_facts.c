@@ -11,25 +11,65 @@
 #define PART_SIDE     1024         /* side of the parts searched for shadows, pixels, about */
 #define PARTS_MOST    16           /* most parts; they tell as much as a larger patch would */
 
-static sonject_status check_pixels(struct report *report, const struct patch_view *view,
-                                   const float *pixels, bool is_complex, double *mean)
+#define INTENSITY_MOST 1e30
+#define LANES          8
+
+/* Checks the pixels of one row. */
+static sonject_status check_row(struct report *report, const struct patch_view *view,
+                                const float *pixels, size_t row, bool is_complex)
 {
-    double sum = 0.0;
-    for (size_t i = 0; i < view->rows * view->columns; i++) {
+    for (size_t i = 0; i < view->columns; i++) {
         const double a = is_complex ? pixels[2 * i] : pixels[i];
         const double b = is_complex ? pixels[2 * i + 1] : 0.0;
         const double intensity = a * a + b * b;
-        const size_t row = i / view->columns;
-        if (!(intensity <= 1e30) || (!is_complex && a < 0.0))
-            return report_failure(
-                report, SONJECT_ERROR_INPUT,
-                "the patch's pixel at row %zu, column %zu is %s: mend the image",
-                view->is_mirrored ? view->rows - 1 - row : row,
-                (size_t)view_patch_column(view, (double)(i % view->columns)),
-                isnan(a) || isnan(b)
-                    ? "not a number (NaN)"
-                    : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));
-        sum += intensity;
+        if (!(intensity <= INTENSITY_MOST) || (!is_complex && a < 0.0))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "the patch's pixel at row %zu, column %zu is %s: mend the image",
+                                  view->is_mirrored ? view->rows - 1 - row : row,
+                                  (size_t)view_patch_column(view, (double)i),
+                                  isnan(a) || isnan(b)         ? "not a number (NaN)"
+                                  : intensity > INTENSITY_MOST ? "too large or infinite"
+                                                               : "a negative amplitude");
+    }
+    return SONJECT_OK;
+}
+
+/* Returns the sum of squares, in as many parts as the compiler may add at once. *least gets the
+ * smallest value. */
+static double sum_of_squares(const float *values, size_t count, float *least)
+{
+    double sums[LANES] = {0.0}, sum = 0.0;
+    float lows[LANES] = {0.0f};
+    const size_t whole = count / LANES * LANES;
+    *least = 0.0f;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (size_t k = 0; k < LANES; k++) {
+            const float value = values[i + k];
+            sums[k] += (double)value * value;
+            lows[k] = value < lows[k] ? value : lows[k];
+        }
+    for (size_t i = whole; i < count; i++) {
+        sum += (double)values[i] * values[i];
+        *least = fminf(*least, values[i]);
+    }
+    for (size_t k = 0; k < LANES; k++) {
+        sum += sums[k];
+        *least = fminf(*least, lows[k]);
+    }
+    return sum;
+}
+
+static sonject_status check_pixels(struct report *report, const struct patch_view *view,
+                                   const float *pixels, bool is_complex, double *mean)
+{
+    const size_t numbers = view->columns * (is_complex ? 2 : 1);
+    double sum = 0.0;
+    for (size_t row = 0; row < view->rows; row++) {
+        float least;
+        const double of_row = sum_of_squares(pixels + row * numbers, numbers, &least);
+        if (!(of_row <= INTENSITY_MOST) || (least < 0.0f && !is_complex))
+            CHECK(check_row(report, view, pixels + row * numbers, row, is_complex));
+        sum += of_row;
     }
     *mean = sum / (double)(view->rows * view->columns);
     if (!(*mean > 1e-30))

@@ -448,7 +448,8 @@ struct injection_input swath_input(const struct swath *swath)
 void swath_close(struct swath *swath)
 {
     free(swath->stored);
-    free(swath->pixels);
+    if (!swath->borrows_pixels)
+        free(swath->pixels);
     free(swath->skipped.numbers);
     free(swath->empty.numbers);
     track_clear(&swath->track);

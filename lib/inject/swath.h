@@ -21,6 +21,7 @@ struct swath {
     void *stored;  /* the patch's pixels as the file stores them; if made, the whole swath's; NULL:
                       linear pixels in memory */
     float *pixels; /* the patch in linear amplitudes or pairs */
+    bool borrows_pixels; /* pixels are a caller's, who keeps them, and must not be changed */
     bool is_complex;
     bool is_made;        /* made by sonject */
     bool is_whole;       /* the file stores integers, even if the layout has floats */

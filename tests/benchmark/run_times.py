@@ -1,6 +1,7 @@
 """Prints times with warm program caches, one line each:
 - Figures 6 (PoCL) and 7 (native) of the paper, from process start to files, beside a process that only lists the devices
-- the injection alone for a 512 x 512 patch, by the C interface through the Python bindings
+- the injection alone for patches of 512 x 512 and 4096 x 4096, by the C interface through the Python bindings,
+  and a copy of the patch
 - the targets of tools/targets with two interactions
 - a mesh of a million triangles, from its file to an image of 400 x 400
 - forming an image again at two thirds of the bandwidth, beside a whole run at that bandwidth: figure 7 with three
@@ -43,15 +44,17 @@ def time_figure(figure, device, folder, swath):
           f"{nothing:.3f} s)")
 
 
-def time_injection():
-    patch = numpy.random.default_rng(1).rayleigh(size=(512, 512)).astype(numpy.float32)
+def time_injection(side):
+    patch = numpy.random.default_rng(1).rayleigh(size=(side, side)).astype(numpy.float32)
     scene = sonject.Scene(
         sonar=SONAR,
         input={"geometry": {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 43.6}},
+        injection={"noise_floor": "-25 dB"},
         objects=[{"shape": "capsule", "length": 2.3, "diameter": 0.3, "heading": "0.6 rad", "burial": 0.1}])
     sonject.inject(patch, scene)
     taken = best_time(lambda _: sonject.inject(patch, scene))
-    print(f"injection of a capsule into 512 x 512 pixels: {taken:.3f} s")
+    copied = best_time(lambda _: patch.copy())
+    print(f"injection of a capsule into {side} x {side} pixels: {taken:.3f} s (a copy of the patch: {copied:.3f} s)")
 
 
 def time_targets(folder):
@@ -97,7 +100,8 @@ with tempfile.TemporaryDirectory() as name:
                     "--first-range", "43.6125"], check=True)
     time_figure("figure6", "pthread", folder, swath)
     time_figure("figure7", "native", folder, swath)
-    time_injection()
+    for side in (512, 4096):
+        time_injection(side)
     time_targets(folder)
     time_mesh(folder)
     for rays in (1, 64):
