@@ -99,7 +99,8 @@ class Made:
         self.floor_db = 10 * numpy.log10(noise / numpy.median(seabed + noise))
 
 
-# The largest allowed standard errors, as shares of the value. The noise floor's is in dB.
+# The largest allowed standard errors, as shares of the value. The noise floor's is in dB. They are for speckle of
+# WIDTH. Wider speckle has fewer grains, so errors grow with its width.
 LIMITS = {"parameter": 0.05, "looks": 0.1, "noise_floor": 1.0, "response_along_track": 0.05,
           "response_range": 0.05}
 
@@ -118,6 +119,6 @@ def deviations(made, measured):
     for name, (estimate, truth) in found.items():
         assert "not_seen" not in estimate, (made.kind, made.looks, name, estimate)
         error = estimate["standard_error"]
-        limit = LIMITS[name] * (1.0 if name == "noise_floor" else truth)
+        limit = LIMITS[name] * (1.0 if name == "noise_floor" else truth) * made.width / WIDTH
         result[name] = ((estimate["value"] - truth) / error, error / limit)
     return result

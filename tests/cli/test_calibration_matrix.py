@@ -1,6 +1,6 @@
 """Tests calibrations of made swaths: all curves x 1 to 4 looks x three ceilings x three noise floors, with speckle
-1.5 and 3 pixels wide. In 95 % of the cases estimates are within three standard errors, and these are small. Takes
-ten minutes."""
+1.5 pixels wide, and of 1 to 3 looks with speckle 3 pixels wide. In 95 % of the cases estimates are within three
+standard errors, and these are small. Takes ten minutes."""
 
 import json
 
@@ -12,11 +12,11 @@ from made_swaths import KINDS, Made, deviations
 FLOORS = {0.7: -20.0, 0.9: -25.0, 1.0: -30.0}
 
 
-@pytest.mark.parametrize("width", (1.5, 3.0))
+@pytest.mark.parametrize("width, most_looks", ((1.5, 4), (3.0, 3)))
 @pytest.mark.parametrize("kind", KINDS)
-def test_curves_looks_ceilings_and_floors(kind, width, sonject, tmp_path):
+def test_curves_looks_ceilings_and_floors(kind, width, most_looks, sonject, tmp_path):
     found = []
-    for looks in (1, 2, 3, 4):
+    for looks in range(1, most_looks + 1):
         for share in (0.7, 0.9, 1.0):
             for turn in range(3):
                 floor = list(FLOORS.values())[(list(FLOORS).index(share) + turn) % 3]
