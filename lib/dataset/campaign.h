@@ -262,7 +262,7 @@ struct campaign {
     uint32_t chip_rows, chip_columns; /* 0: all of each swath */
     uint32_t edge, clearance;         /* pixels kept free at swaths' edges, around contacts */
     double spread;                    /* share of a chip's sides in which objects may lie */
-    double slant_range_m[2];          /* limits for the middles of images */
+    double slant_range_m[2];          /* limits for the middles of images; both 0: none */
     struct ratio_limits ratio;        /* limits for swaths without their own */
     double empty, clutter_alone;
     bool clutter_labelled;
@@ -278,7 +278,6 @@ struct campaign {
     size_t swath_count;
     struct split splits[CAMPAIGN_SPLITS_MAX];
     size_t split_count;
-    bool has_range;
     uint32_t streams; /* number of random streams that distributions take */
     struct tree tree; /* the file's tree, overrides included; places point into it */
 };
@@ -302,13 +301,12 @@ sonject_status campaign_check_key(const struct tree *tree, struct tree_place pla
 sonject_status campaign_check_entry(struct reader *reader, const struct tree_entry *entry,
                                     const char *key, bool is_object);
 
-/* Reads a list of two lengths, m, of which the first is smaller. */
+/* Read a list of two lengths, m, of which the first is smaller, into double[2]; and "[least, most]"
+ * into a struct ratio_limits. */
 sonject_status campaign_read_lengths(struct reader *reader, const struct tree_node *node,
-                                     double ends_m[2]);
-
-/* Reads "[least, most]". */
+                                     void *member);
 sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node *node,
-                                   struct ratio_limits *ratio);
+                                   void *member);
 
 /* Read `swaths` and `splits` into a campaign. */
 sonject_status campaign_read_swaths(struct reader *reader, const struct tree_node *node,

@@ -216,17 +216,10 @@ static sonject_status read_scene_name(struct reader *reader, const struct tree_n
     return read_path(reader, node, &campaign->scene_path);
 }
 
-static sonject_status read_range(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    struct campaign *campaign = structure;
-    campaign->has_range = true;
-    return campaign_read_lengths(reader, node, campaign->slant_range_m);
-}
-
 sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node *node,
-                                   struct ratio_limits *ratio)
+                                   void *member)
 {
+    struct ratio_limits *ratio = member;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two numbers, [least, most]");
     CHECK(read_quantity(reader, &node->entries[0].value, QUANTITY_NUMBER, &ratio->least));
@@ -239,16 +232,9 @@ sonject_status campaign_read_ratio(struct reader *reader, const struct tree_node
                         RATIO_MAX, ratio->least, ratio->most);
 }
 
-static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
+static sonject_status read_grey(struct reader *reader, const struct tree_node *node, void *member)
 {
-    return campaign_read_ratio(reader, node, &((struct campaign *)structure)->ratio);
-}
-
-static sonject_status read_grey(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    double *ends = ((struct campaign *)structure)->grey_db;
+    double *ends = member;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two levels, [black, white]");
     for (int i = 0; i < 2; i++)
@@ -260,7 +246,7 @@ static sonject_status read_grey(struct reader *reader, const struct tree_node *n
                         ends[1]);
 }
 
-static sonject_status read_side(struct reader *reader, const struct tree_node *node, uint32_t *side)
+static sonject_status read_side(struct reader *reader, const struct tree_node *node, void *member)
 {
     uint64_t pixels = 0;
     const char *text = read_text(reader, node);
@@ -270,22 +256,8 @@ static sonject_status read_side(struct reader *reader, const struct tree_node *n
         (!text_to_count(text, &pixels) || pixels < CAMPAIGN_CHIP_MIN || pixels > CAMPAIGN_CHIP_MAX))
         return refuse_value(reader, node, "must be all, or a whole number of %d...%d",
                             CAMPAIGN_CHIP_MIN, CAMPAIGN_CHIP_MAX);
-    *side = (uint32_t)pixels;
+    *(uint32_t *)member = (uint32_t)pixels;
     return SONJECT_OK;
-}
-
-static sonject_status read_rows(struct reader *reader, const struct tree_node *node,
-                                void *structure)
-{
-    struct campaign *campaign = structure;
-    return read_side(reader, node, &campaign->chip_rows);
-}
-
-static sonject_status read_columns(struct reader *reader, const struct tree_node *node,
-                                   void *structure)
-{
-    struct campaign *campaign = structure;
-    return read_side(reader, node, &campaign->chip_columns);
 }
 
 /* The words of enum output, from the first that a user chooses on. Labels begin with yolo. */
@@ -344,9 +316,10 @@ static sonject_status check_items(struct reader *reader, const struct tree_node 
 #define SIDE_RANGE TEXT_OF(CAMPAIGN_CHIP_MIN) "..." TEXT_OF(CAMPAIGN_CHIP_MAX) " pixels, or all"
 static const struct field chip_fields[] = {
     {"rows", "rows of each image; all: as many as its swath has",
-     SPECIAL(read_rows, "whole number, or all"), .range = SIDE_RANGE, REQUIRED},
+     SPECIAL(read_side, "whole number, or all"), MEMBER(chip_rows), .range = SIDE_RANGE, REQUIRED},
     {"columns", "columns of each image; all: as many as its swath has",
-     SPECIAL(read_columns, "whole number, or all"), .range = SIDE_RANGE, REQUIRED},
+     SPECIAL(read_side, "whole number, or all"), MEMBER(chip_columns), .range = SIDE_RANGE,
+     REQUIRED},
     {"edge", "pixels that images keep away from the edges of swaths",
      COUNT32(edge, 0, UINT32_MAX / 4), .per = " pixels"},
     {"clearance",
@@ -357,11 +330,12 @@ static const struct field chip_fields[] = {
      QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0), .preset = 0.5},
     {"slant_range",
      "[nearest, farthest] slant range of images' middles, or of objects if columns is all",
-     SPECIAL(read_range, "list of two lengths")},
+     SPECIAL(campaign_read_lengths, "list of two lengths"), MEMBER(slant_range_m)},
     {"range_over_altitude",
      "[least, most] slant range over altitude at images' middles (objects if columns is all); "
      "water column allowed",
-     SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
+     SPECIAL(campaign_read_ratio, "list of two numbers"), MEMBER(ratio),
+     .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 static const struct section chip_section = {ROWS(chip_fields)};
 
@@ -448,7 +422,7 @@ static const struct field campaign_fields[] = {
     {"grey",
      "[black, white] of 8 bit images for detectors: levels over full scale, as convert --db; "
      "default: swath's numbers",
-     SPECIAL(read_grey, "list of two levels")},
+     SPECIAL(read_grey, "list of two levels"), MEMBER(grey_db)},
     {"labels", "label formats besides COCO: yolo, voc", SPECIAL(read_outputs, "list of words")},
     {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
     {"visible", "how visible targets must be", SAME(visible_section)},

@@ -142,7 +142,7 @@ static bool limit_ranges(const struct limits *limits, struct swath_plan *plan, s
     double low = (double)chips->first_column;
     double high = end;
     leave_out_water(limits, half, limits->lowest_m, &low, &high);
-    if (campaign->has_range)
+    if (campaign->slant_range_m[0] < campaign->slant_range_m[1])
         limit_columns(limits, half, campaign->slant_range_m[0], campaign->slant_range_m[1], &low,
                       &high);
     plan->objects.first = has_all ? low : is_reversed ? 0.0 : floor(bottom) + 1.0;
@@ -372,7 +372,7 @@ static sonject_status refuse_swath(const struct limits *limits, const struct swa
 #define ASK(...) length += (size_t)snprintf(asked + length, sizeof asked - length, __VA_ARGS__)
     if (!limits->shows_water)
         ASK(", beyond the sonar's altitude, up to %g m", limits->highest_m);
-    if (campaign->has_range)
+    if (campaign->slant_range_m[0] < campaign->slant_range_m[1])
         ASK(", at slant ranges of %g to %g m", campaign->slant_range_m[0],
             campaign->slant_range_m[1]);
     if (limits->ratio.least > 0.0)

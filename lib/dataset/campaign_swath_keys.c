@@ -44,8 +44,9 @@ static sonject_status read_swath_keys(struct reader *reader, const struct tree_n
 }
 
 sonject_status campaign_read_lengths(struct reader *reader, const struct tree_node *node,
-                                     double ends_m[2])
+                                     void *member)
 {
+    double *ends_m = member;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two lengths, [from, to]");
     for (int i = 0; i < 2; i++)
@@ -56,24 +57,12 @@ sonject_status campaign_read_lengths(struct reader *reader, const struct tree_no
                         ends_m[1]);
 }
 
-static sonject_status read_along_track(struct reader *reader, const struct tree_node *node,
-                                       void *structure)
-{
-    return campaign_read_lengths(reader, node, ((struct avoided_box *)structure)->along_track_m);
-}
-
-static sonject_status read_slant_range(struct reader *reader, const struct tree_node *node,
-                                       void *structure)
-{
-    return campaign_read_lengths(reader, node, ((struct avoided_box *)structure)->slant_range_m);
-}
-
 #define STRUCTURE struct avoided_box
 static const struct field box_fields[] = {
     {"along_track", "[from, to] of the box along the track",
-     SPECIAL(read_along_track, "list of two lengths")},
+     SPECIAL(campaign_read_lengths, "list of two lengths"), MEMBER(along_track_m)},
     {"slant_range", "[from, to] of the box in slant range",
-     SPECIAL(read_slant_range, "list of two lengths")},
+     SPECIAL(campaign_read_lengths, "list of two lengths"), MEMBER(slant_range_m)},
     {"row", "first row of the box", COUNT64(pixels.first_row, 0, PIXELS_MAX)},
     {"column", "first column of the box", COUNT64(pixels.first_column, 0, PIXELS_MAX)},
     {"rows", "number of rows of the box", COUNT64(pixels.rows, 0, PIXELS_MAX)},
@@ -100,12 +89,6 @@ static sonject_status read_avoid(struct reader *reader, const struct tree_node *
     return read_list(reader, node, &boxes, structure);
 }
 
-static sonject_status read_ratio(struct reader *reader, const struct tree_node *node,
-                                 void *structure)
-{
-    return campaign_read_ratio(reader, node, &((struct swath_plan *)structure)->ratio);
-}
-
 #define STRUCTURE struct swath_plan
 static const struct field swath_fields[] = {
     {"path", "image file of the swath", SPECIAL(read_swath_path, "file name"), REQUIRED},
@@ -119,7 +102,8 @@ static const struct field swath_fields[] = {
     {"range_over_altitude",
      "[least, most] slant range over altitude for this swath's images, instead of "
      "chip.range_over_altitude",
-     SPECIAL(read_ratio, "list of two numbers"), .range = "1..." TEXT_OF(RATIO_MAX)},
+     SPECIAL(campaign_read_ratio, "list of two numbers"), MEMBER(ratio),
+     .range = "1..." TEXT_OF(RATIO_MAX)},
 };
 const struct section campaign_swath_section = {ROWS(swath_fields)};
 #undef STRUCTURE

@@ -32,7 +32,7 @@ enum field_kind {
     FIELD_SECTION,  /* a structure, which is the parent's own where offset is 0 */
     FIELD_NAMED,    /* a structure, or a single text that `read` takes into it */
     FIELD_ENTRIES,  /* an array of structures that the section fills, and their number */
-    FIELD_SPECIAL   /* no single member: `read` reads it; NULL: read before the table is */
+    FIELD_SPECIAL   /* `read` reads it into the member, or the structure; NULL: read elsewhere */
 };
 
 /* Details of a number's bounds. */
@@ -73,8 +73,8 @@ struct field {
     size_t count_offset, entry_bytes; /* entries: offset of their uint32_t count; size of one */
     const struct section *section;
     const char *unit; /* for users where kind and quantity tell none; the word for an entry */
-    /* Reads the key into the section's structure in its own way; FIELD_NAMED: reads only a single
-     * text. NULL with FIELD_SPECIAL: the key is read elsewhere. */
+    /* Reads the key into the section's structure in its own way; FIELD_SPECIAL: into the member at
+     * offset; FIELD_NAMED: reads only a single text, into the member. */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };
 

@@ -240,7 +240,7 @@ static sonject_status read_value(struct reader *reader, const struct field *fiel
     uint64_t count = 0;
     sonject_status status = SONJECT_OK;
     if (field->read && field->kind != FIELD_NAMED)
-        return field->read(reader, node, structure);
+        return field->read(reader, node, field->kind == FIELD_SPECIAL ? destination : structure);
     switch (field->kind) {
     case FIELD_QUANTITY:
         if (field->section && node->kind != TREE_TEXT)

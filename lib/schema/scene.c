@@ -225,20 +225,20 @@ const char *transfer_word(uint32_t kind)
 }
 
 static sonject_status read_channel(struct reader *reader, const struct tree_node *node,
-                                   void *structure)
+                                   void *member)
 {
-    struct scene *scene = structure;
+    int32_t *channel = member;
     char excerpt[40];
     uint64_t number = 0;
     const char *text = node->kind == TREE_TEXT && node->text ? node->text : "";
     if (reader->has_no_channels)
         return SONJECT_OK;
     if (is_word(node, "port"))
-        scene->channel = SONJECT_CHANNEL_PORT;
+        *channel = SONJECT_CHANNEL_PORT;
     else if (is_word(node, "starboard"))
-        scene->channel = SONJECT_CHANNEL_STARBOARD;
+        *channel = SONJECT_CHANNEL_STARBOARD;
     else if (text_to_count(text, &number) && number <= CHANNEL_NUMBER_MAX)
-        scene->channel = (int32_t)number;
+        *channel = (int32_t)number;
     else
         return refuse_value(reader, node,
                             "'%s' is neither port nor starboard nor a channel's "

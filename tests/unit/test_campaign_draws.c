@@ -166,7 +166,6 @@ static void check_places(int quality)
     campaign.chip_columns = 17;
     campaign.edge = 1;
     campaign.clearance = 3;
-    campaign.has_range = true;
     campaign.slant_range_m[0] = 26.0; /* column 12, the middle of a chip at 4 */
     campaign.slant_range_m[1] = 52.0; /* column 64, the middle of a chip at 56 */
     swath.layout.rows = 60;
