@@ -247,12 +247,7 @@ sonject_status write_sheet(const struct data_set *set, const char *name, const u
         status = draw_cell(set, &canvas, ids[i],
                            CELL_GAP + (int64_t)(i % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP),
                            CELL_GAP + i / CELLS_ACROSS * pitch);
-    if (status == SONJECT_OK) {
-        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
-        status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);
-    }
-    free(canvas.rgb);
-    return status;
+    return picture_write(set->report, status, &canvas, path);
 }
 
 static uint32_t cell_count(const struct data_set *set)

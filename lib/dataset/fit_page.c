@@ -315,12 +315,7 @@ static sonject_status write_picture(const struct fit *fit, const char *path)
         draw_chips(fit->report, &canvas, fit->real_chips, fit->real_chip_count, scale, 0);
     THEN(status,
          draw_chips(fit->report, &canvas, fit->made_chips, fit->made_chip_count, scale, real_rows));
-    if (status == SONJECT_OK) {
-        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
-        status = raster_file_write(fit->report, path, &layout, NULL, NULL, 0, canvas.rgb);
-    }
-    free(canvas.rgb);
-    return status;
+    return picture_write(fit->report, status, &canvas, path);
 }
 
 sonject_status fit_page_name(struct report *report, const char *fitted, const char *extension,

@@ -86,15 +86,15 @@ static void amplitude_of(const float *pixels, size_t count, bool is_complex, flo
 
 /* Returns what the page needs to show each panel by itself, and to locate a pixel of it. */
 static json_t *quicklook_document(const struct plot_frame *frame, const struct region *window,
-                                  const struct plot_place *places, uint32_t height, uint32_t width)
+                                  const struct plot_place *places, const struct canvas *picture)
 {
     json_t *panels = json_array();
     for (int i = 0; i < QUICKLOOK_PANELS; i++)
         json_append(&panels,
                     JSON_OBJECT(JSON_COUNT(places + i, left), JSON_COUNT(places + i, top),
                                 JSON_COUNT(places + i, width), JSON_COUNT(places + i, height)));
-    return JSON_OBJECT({"height", json_count(height)}, {"width", json_count(width)},
-                       {"panels", panels}, {"row", json_count(window->first_row)},
+    return JSON_OBJECT(JSON_COUNT(picture, height), JSON_COUNT(picture, width), {"panels", panels},
+                       {"row", json_count(window->first_row)},
                        {"column", json_count(window->first_column)}, JSON_COUNT(window, rows),
                        JSON_COUNT(window, columns), JSON_NUMBER(frame, first_along_track_m),
                        JSON_NUMBER(frame, row_spacing_m), JSON_NUMBER(frame, first_range_m),
@@ -177,20 +177,15 @@ static sonject_status write_quicklook(struct report *report, struct run_facts *f
                                                            : geometry->column_spacing_m,
         .range_label = "slant range, m",
         .difference_db = 20.0};
-    uint8_t *picture = NULL;
-    uint32_t height, width;
+    struct canvas picture = {0};
     struct plot_place places[QUICKLOOK_PANELS];
-    sonject_status status =
-        plot_panels(report, &frame, panels, QUICKLOOK_PANELS, &picture, &height, &width, places);
-    if (status == SONJECT_OK) {
-        const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
-        status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
-        json_add(&facts->page, "quicklook",
-                 quicklook_document(&frame, &window, places, height, width));
-    }
-    free(picture);
+    const sonject_status status =
+        plot_panels(report, &frame, panels, QUICKLOOK_PANELS, &picture.rgb, &picture.height,
+                    &picture.width, places);
+    if (status == SONJECT_OK)
+        json_add(&facts->page, "quicklook", quicklook_document(&frame, &window, places, &picture));
     free(before);
-    return status;
+    return picture_write(report, status, &picture, path);
 }
 
 sonject_status write_layer(struct report *report, const struct run_facts *facts, enum layer layer,

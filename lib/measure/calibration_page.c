@@ -492,12 +492,8 @@ sonject_status calibration_page_write(struct report *report, const struct calibr
         draw_water(&charts[4], found);
         draw_gain(&charts[5], found);
     }
-    if (status == SONJECT_OK) {
-        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
-        status = raster_file_write(report, path, &layout, NULL, NULL, 0, canvas.rgb);
-    }
     if (has_canvas)
-        free(canvas.rgb);
+        status = picture_write(report, status, &canvas, path);
     free(law);
     free(medians);
     free(sorted);

@@ -138,10 +138,7 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
                       &place));
     for (size_t i = 0; i < box_count; i++)
         draw_box(&picture, &place, image, &boxes[i]);
-    const struct raster_layout layout = {picture.height, picture.width, 3, PIXEL_UINT8};
-    sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture.rgb);
-    free(picture.rgb);
-    return status;
+    return picture_write(report, SONJECT_OK, &picture, path);
 }
 
 /* Fills in the axes: the caller's, else the file's, else pixels. Returns the range axis. */

@@ -239,6 +239,15 @@ sonject_status raster_file_write_jpeg(struct report *report, const char *path,
     return write_raster(report, path, layout, NULL, attributes, attribute_count, pixels, quality);
 }
 
+sonject_status picture_write(struct report *report, sonject_status status, struct canvas *picture,
+                             const char *path)
+{
+    const struct raster_layout layout = {picture->height, picture->width, 3, PIXEL_UINT8};
+    THEN(status, raster_file_write(report, path, &layout, NULL, NULL, 0, picture->rgb));
+    free(picture->rgb);
+    return status;
+}
+
 sonject_status raster_file_write_placed(struct report *report, const char *path,
                                         const struct raster_layout *layout,
                                         const struct region *region, const void *pixels,

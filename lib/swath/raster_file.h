@@ -4,6 +4,7 @@
 #define SONJECT_SWATH_RASTER_FILE_H
 
 #include "base/report.h"
+#include "image/canvas.h"
 #include "image/raster.h"
 #include "swath/decoder.h"
 #include "swath/image_head.h"
@@ -48,6 +49,11 @@ sonject_status raster_file_write_jpeg(struct report *report, const char *path,
                                       const struct raster_layout *layout,
                                       const struct raster_attribute *attributes,
                                       size_t attribute_count, const void *pixels, int quality);
+
+/* Writes a drawn picture if the drawing's status is OK, and frees its pixels. Returns status, or the
+ * failure to write, as raster_file_write. */
+sonject_status picture_write(struct report *report, sonject_status status, struct canvas *picture,
+                             const char *path);
 
 /* Writes to path a raster that is 0 except in region, which gets pixels: masks of a swath that may
  * be larger than memory. palette: PNG_PALETTE_BYTES for the colours of a PNG of 8 bit numbers,
