@@ -328,13 +328,11 @@ sonject_status refuse_value(const struct reader *reader, const struct tree_node 
 
 /* Reports a message about a key of the section node at the reader's path, "material.lambert" for
  * instance. The message points at the key, or at the section if the key is not there. Says nothing
- * if the key is already known to be wrong. Returns INPUT. */
-sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
-                          const char *format, ...) REPORT_FORMAT(4);
-
-/* Works like refuse_key, but says nothing if one of other keys, separated by blanks, is wrong. */
+ * if the key, or one of others, separated by blanks, is already known to be wrong. Returns INPUT.
+ */
 sonject_status refuse_relation(struct reader *reader, const struct tree_node *node, const char *key,
                                const char *others, const char *format, ...) REPORT_FORMAT(5);
+#define refuse_key(reader, node, key, ...) refuse_relation(reader, node, key, "", __VA_ARGS__)
 
 /* Returns a check that refuses every wrong value of the section node. */
 struct check check_at(struct reader *reader, const struct tree_node *node);

@@ -220,37 +220,19 @@ void mark_wrong(struct reader *reader, const struct tree_node *node, const char 
     key_path_shorten(&reader->path, before);
 }
 
-static sonject_status refuse_of(struct reader *reader, const struct tree_node *node,
-                                const char *key, const char *others, const char *format,
-                                va_list arguments)
-{
-    if (!are_valid(reader, key) || !are_valid(reader, others))
-        return SONJECT_ERROR_INPUT;
-    const size_t before = key_path_add(&reader->path, key);
-    const sonject_status status = refuse_at(reader, place_of_key(node, key), format, arguments);
-    key_path_shorten(&reader->path, before);
-    if (*others && reader->tree->mistakes)
-        reader->tree->mistakes->relations++;
-    return status;
-}
-
-sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
-                          const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const sonject_status status = refuse_of(reader, node, key, "", format, arguments);
-    va_end(arguments);
-    return status;
-}
-
 sonject_status refuse_relation(struct reader *reader, const struct tree_node *node, const char *key,
                                const char *others, const char *format, ...)
 {
     va_list arguments;
+    if (!are_valid(reader, key) || !are_valid(reader, others))
+        return SONJECT_ERROR_INPUT;
+    const size_t before = key_path_add(&reader->path, key);
     va_start(arguments, format);
-    const sonject_status status = refuse_of(reader, node, key, others, format, arguments);
+    const sonject_status status = refuse_at(reader, place_of_key(node, key), format, arguments);
     va_end(arguments);
+    key_path_shorten(&reader->path, before);
+    if (*others && reader->tree->mistakes)
+        reader->tree->mistakes->relations++;
     return status;
 }
 
