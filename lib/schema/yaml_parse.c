@@ -105,10 +105,8 @@ static sonject_status take_key(struct builder *builder, const yaml_event_t *even
 static sonject_status build_value(struct builder *builder, int depth, struct tree_node *node)
 {
     yaml_event_t event;
-    sonject_status status = next_event(builder, &event);
-    if (status != SONJECT_OK)
-        return status;
-    status = build_node(builder, &event, depth, node);
+    CHECK(next_event(builder, &event));
+    const sonject_status status = build_node(builder, &event, depth, node);
     yaml_event_delete(&event);
     return status;
 }
@@ -143,11 +141,6 @@ static sonject_status build_entries(struct builder *builder, enum tree_kind kind
     }
 }
 
-static bool is_marked(const yaml_char_t *anchor, const yaml_char_t *tag)
-{
-    return anchor || tag;
-}
-
 static sonject_status build_node(struct builder *builder, const yaml_event_t *event, int depth,
                                  struct tree_node *node)
 {
@@ -157,17 +150,17 @@ static sonject_status build_node(struct builder *builder, const yaml_event_t *ev
         return refuse(builder, event, "nested too deeply; no scene needs this many levels");
     switch (event->type) {
     case YAML_SCALAR_EVENT:
-        if (is_marked(event->data.scalar.anchor, event->data.scalar.tag))
+        if (event->data.scalar.anchor || event->data.scalar.tag)
             return refuse(builder, event, no_marks);
         node->kind = TREE_TEXT;
         node->is_quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
         return copy_scalar(builder, event, &node->text);
     case YAML_SEQUENCE_START_EVENT:
-        if (is_marked(event->data.sequence_start.anchor, event->data.sequence_start.tag))
+        if (event->data.sequence_start.anchor || event->data.sequence_start.tag)
             return refuse(builder, event, no_marks);
         return build_entries(builder, TREE_LIST, depth, node);
     case YAML_MAPPING_START_EVENT:
-        if (is_marked(event->data.mapping_start.anchor, event->data.mapping_start.tag))
+        if (event->data.mapping_start.anchor || event->data.mapping_start.tag)
             return refuse(builder, event, no_marks);
         return build_entries(builder, TREE_SECTION, depth, node);
     default:
@@ -178,11 +171,9 @@ static sonject_status build_node(struct builder *builder, const yaml_event_t *ev
 static sonject_status expect(struct builder *builder, yaml_event_type_t type, const char *otherwise)
 {
     yaml_event_t event;
-    sonject_status status = next_event(builder, &event);
-    if (status != SONJECT_OK)
-        return status;
-    if (event.type != type)
-        status = refuse(builder, &event, otherwise);
+    CHECK(next_event(builder, &event));
+    const sonject_status status =
+        event.type == type ? SONJECT_OK : refuse(builder, &event, otherwise);
     yaml_event_delete(&event);
     return status;
 }
@@ -193,9 +184,8 @@ static sonject_status build_document(struct builder *builder, int depth, struct 
     THEN(status, expect(builder, YAML_DOCUMENT_START_EVENT, "there is nothing in it"));
     THEN(status, build_value(builder, depth, node));
     THEN(status, expect(builder, YAML_DOCUMENT_END_EVENT, "something follows the document"));
-    if (status == SONJECT_OK)
-        status = expect(builder, YAML_STREAM_END_EVENT,
-                        "a second document starts here; keep one in a file");
+    THEN(status, expect(builder, YAML_STREAM_END_EVENT,
+                        "a second document starts here; keep one in a file"));
     return status;
 }
 
