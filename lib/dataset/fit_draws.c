@@ -190,8 +190,8 @@ static void note_fixed(struct fit_draws *draws, const struct item *item, size_t 
 
 static const struct tree_node *section_of(const struct tree_node *node, const char *key)
 {
-    const struct tree_entry *entry = tree_find(node, key);
-    return entry && entry->value.kind == TREE_SECTION ? &entry->value : NULL;
+    const struct tree_node *value = tree_value(node, key);
+    return value && value->kind == TREE_SECTION ? value : NULL;
 }
 
 sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
@@ -456,13 +456,12 @@ static sonject_status splice_selection(struct splice_list *list, const struct fi
         snprintf(pair, sizeof pair, "visible: {highlight: %s, shadow: %s, otherwise: redraw}",
                  values[0], values[1]);
         CHECK(insert_key(list, report, draws, root, pair));
-    } else if (isfinite(selection->highlight_db)) {
-        CHECK(set_key(list, draws, report, "visible", "highlight", values[0]));
-    } else if (isfinite(selection->shadow_db)) {
-        CHECK(set_key(list, draws, report, "visible", "shadow", values[1]));
+    } else {
+        if (isfinite(selection->highlight_db))
+            CHECK(set_key(list, draws, report, "visible", "highlight", values[0]));
+        if (isfinite(selection->shadow_db))
+            CHECK(set_key(list, draws, report, "visible", "shadow", values[1]));
     }
-    if (visible && isfinite(selection->highlight_db) && isfinite(selection->shadow_db))
-        CHECK(set_key(list, draws, report, "visible", "shadow", values[1]));
     CHECK(splice_ratio(list, draws, report, section_of(root, "chip"), &selection->chip));
     for (size_t i = 0; selection->swaths && i < swaths->value.count; i++)
         CHECK(splice_ratio(list, draws, report, &swaths->value.entries[i].value,

@@ -82,13 +82,13 @@ static sonject_status lay_under(struct layer *layer, struct tree_node *scene,
     return status;
 }
 
-/* Returns the number that a text is, or NAN if the text is no number. */
+/* Returns the number that a text is, or NAN if the text is no number or node is NULL. */
 static double number_of_text(const struct tree_node *node)
 {
     const char *rest;
     double number;
-    return node->kind == TREE_TEXT && node->text && text_to_number(node->text, &number, &rest) &&
-                   !*rest
+    return node && node->kind == TREE_TEXT && node->text &&
+                   text_to_number(node->text, &number, &rest) && !*rest
                ? number
                : NAN;
 }
@@ -97,52 +97,48 @@ static double number_of_text(const struct tree_node *node)
 static sonject_status take_first_returns(struct report *report, const struct tree_node *measured,
                                          bool is_leftward, struct first_return_list *returns)
 {
-    const struct tree_entry *every = tree_find(measured, "first_return_every");
-    const struct tree_entry *columns = tree_find(measured, "first_return");
-    const struct tree_entry *width = tree_find(measured, "columns");
-    const double step = every ? number_of_text(&every->value) : NAN;
-    if (!columns || columns->value.kind != TREE_LIST || columns->value.count == 0 ||
+    const struct tree_node *columns = tree_value(measured, "first_return");
+    const double width = number_of_text(tree_value(measured, "columns"));
+    const double step = number_of_text(tree_value(measured, "first_return_every"));
+    if (!columns || columns->kind != TREE_LIST || columns->count == 0 ||
         !(step >= 1.0 && step <= (double)PING_ROWS_MAX))
         return SONJECT_OK;
-    double *found = allocate_array(columns->value.count, sizeof *found);
+    double *found = allocate_array(columns->count, sizeof *found);
     CHECK_MEMORY(report, found, "first returns");
     bool are_columns = true;
-    for (size_t i = 0; i < columns->value.count; i++) {
-        found[i] = number_of_text(&columns->value.entries[i].value);
+    for (size_t i = 0; i < columns->count; i++) {
+        found[i] = number_of_text(&columns->entries[i].value);
         are_columns = are_columns && found[i] >= 0.0 && isfinite(found[i]);
     }
     if (!are_columns) {
         free(found);
         return SONJECT_OK;
     }
-    *returns = (struct first_return_list){found, columns->value.count, (size_t)step,
-                                          is_leftward && width ? number_of_text(&width->value) - 0.5
-                                                               : 0.0};
+    const bool has_width = tree_value(measured, "columns") != NULL;
+    *returns = (struct first_return_list){found, columns->count, (size_t)step,
+                                          is_leftward && has_width ? width - 0.5 : 0.0};
     return SONJECT_OK;
 }
 
 /* Returns whether the scene needs first returns, of which a long line has thousands. */
 static bool asks_for_returns(const struct tree_node *scene)
 {
-    const struct tree_entry *sonar = tree_find(scene, "sonar");
-    const struct tree_entry *altitude = sonar ? tree_find(&sonar->value, "altitude") : NULL;
-    return altitude && is_word(&altitude->value, "first_return");
+    const struct tree_node *altitude = tree_value(tree_value(scene, "sonar"), "altitude");
+    return altitude && is_word(altitude, "first_return");
 }
 
 /* Takes the side and the altitudes that the calibration was measured on. */
 static void take_measured(struct scene *scene, const struct tree_node *measured)
 {
-    const struct tree_entry *side = tree_find(measured, "side");
-    const struct tree_entry *sides = tree_find(measured, "sides");
-    const struct tree_entry *altitude = tree_find(measured, "recorded_altitude");
-    const struct tree_entry *share =
-        altitude ? tree_find(&altitude->value, "over_first_return") : NULL;
-    const double number = share ? number_of_text(&share->value) : NAN;
-    if (side && side->value.kind == TREE_TEXT && side->value.text)
-        snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->value.text);
-    scene->calibrated_leftward = sides && is_word(&sides->value, LEFTWARD_SIDES);
-    if (!isnan(number))
-        scene->recorded_over_first_return = number;
+    const struct tree_node *side = tree_value(measured, "side");
+    const struct tree_node *sides = tree_value(measured, "sides");
+    const double share =
+        number_of_text(tree_value(tree_value(measured, "recorded_altitude"), "over_first_return"));
+    if (side && side->kind == TREE_TEXT && side->text)
+        snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->text);
+    scene->calibrated_leftward = sides && is_word(sides, LEFTWARD_SIDES);
+    if (!isnan(share))
+        scene->recorded_over_first_return = share;
 }
 
 /* Checks version and sections, and lays the sections' keys under the scene's. */
@@ -151,8 +147,7 @@ static sonject_status take_keys(struct layer *layer, const char *file)
     static const char *const sections[] = {"input", "sonar", "injection"};
     struct tree *own = &layer->calibration;
     const struct tree_entry *version = tree_find(&own->root, "sonject_calibration");
-    if (!version || version->value.kind != TREE_TEXT || !version->value.text ||
-        strcmp(version->value.text, "1") != 0)
+    if (!version || !is_word(&version->value, "1"))
         return tree_failure(own, version ? version->place : own->root.place, "sonject_calibration",
                             "must be 1: is it a file of sonject calibrate?");
     for (size_t i = 0; i < own->root.count; i++) {
@@ -188,15 +183,15 @@ static sonject_status take_keys(struct layer *layer, const char *file)
 }
 
 static sonject_status lay_file(struct reader *reader, struct tree *tree,
-                               const struct tree_entry *named, const char *file)
+                               const struct tree_node *named, const char *file)
 {
     char *text = NULL;
     size_t bytes;
-    struct layer layer = {.reader = reader, .tree = tree, .place = named->value.place};
+    struct layer layer = {.reader = reader, .tree = tree, .place = named->place};
     CHECK(file_read_whole(reader->report, file, TREE_BYTES_MAX, &text, &bytes));
     tree_init(&layer.calibration, reader->report, file);
     layer.calibration.mistakes = tree->mistakes;
-    layer.calibration.named_at = named->value.place;
+    layer.calibration.named_at = named->place;
     sonject_status status = tree_parse(&layer.calibration, text, bytes);
     free(text);
     THEN(status, take_keys(&layer, file));
@@ -207,19 +202,19 @@ static sonject_status lay_file(struct reader *reader, struct tree *tree,
 
 sonject_status take_calibration(struct reader *reader, struct tree *tree)
 {
-    const struct tree_entry *input = tree_find(&tree->root, "input");
-    const struct tree_entry *named = input ? tree_find(&input->value, "calibration") : NULL;
+    const struct tree_node *input = tree_value(&tree->root, "input");
+    const struct tree_node *named = tree_value(input, "calibration");
     const char *made = reader->made_calibration;
     char *file = NULL;
-    if (!named || count_given(&input->value, "uniform synthetic") > 0)
+    if (!named || count_given(input, "uniform synthetic") > 0)
         return SONJECT_OK; /* read_section refuses these combinations */
-    if (is_word(&named->value, "auto")) {
+    if (is_word(named, "auto")) {
         reader->scene->calibrates_itself = made == NULL;
         return made ? lay_file(reader, tree, named, made) : SONJECT_OK;
     }
     const size_t outer = key_path_add(&reader->path, "input");
     key_path_add(&reader->path, "calibration");
-    sonject_status status = read_existing_path(reader, &named->value, &file);
+    sonject_status status = read_existing_path(reader, named, &file);
     key_path_shorten(&reader->path, outer);
     THEN(status, lay_file(reader, tree, named, file));
     free(file);

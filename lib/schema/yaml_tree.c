@@ -73,6 +73,12 @@ struct tree_entry *tree_find(const struct tree_node *node, const char *key)
     return NULL;
 }
 
+struct tree_node *tree_value(const struct tree_node *node, const char *key)
+{
+    struct tree_entry *entry = node ? tree_find(node, key) : NULL;
+    return entry ? &entry->value : NULL;
+}
+
 bool tree_is_null(const struct tree_node *node)
 {
     if (node->kind != TREE_TEXT || node->is_quoted)

@@ -89,6 +89,9 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
 /* Returns the entry of a section's key; NULL if there is none, or if node is not a section. */
 struct tree_entry *tree_find(const struct tree_node *node, const char *key);
 
+/* Returns the value of a section's key; NULL if there is none, or if node is NULL or no section. */
+struct tree_node *tree_value(const struct tree_node *node, const char *key);
+
 /* Returns true for no value: nothing at all, ~ or null. */
 bool tree_is_null(const struct tree_node *node);
 
