@@ -1,5 +1,6 @@
 /* The page that shows why to believe a calibration: six charts. */
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,10 +121,32 @@ static void draw_piece(const struct chart *chart, const double from[2], const do
                     chart_x(chart, to[0]), chart_y(chart, to[1]), thickness, colour);
 }
 
-/* Draws a line of the legend, counted from the upper left or upper right corner of the chart. */
-static void draw_legend(const struct chart *chart, int line, bool is_right, const char *text,
-                        struct colour colour)
+/* Draws a curve's next piece, from the pen to a point, and moves the pen. It starts as NAN. */
+static void draw_to(const struct chart *chart, double pen[2], double x, double y, double thickness,
+                    struct colour colour)
 {
+    const double to[2] = {x, y};
+    draw_piece(chart, pen, to, thickness, colour);
+    memcpy(pen, to, sizeof to);
+}
+
+static void set_axes(struct chart *chart, double left, double right, double bottom, double top)
+{
+    chart->low[0] = left;
+    chart->high[0] = right;
+    chart->low[1] = bottom;
+    chart->high[1] = top;
+}
+
+/* Draws a line of the legend, counted from the upper left or upper right corner of the chart. */
+static REPORT_FORMAT(5) void draw_legend(const struct chart *chart, int line, bool is_right,
+                                         struct colour colour, const char *format, ...)
+{
+    char text[TEXT_BYTES];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
     const int64_t length = text_length(text, SIZE_MAX);
     text_at(chart, is_right ? chart->left + CHART_WIDTH - 10 - length : chart->left + 10,
             chart->top + 22 + 20 * line, text, colour);
@@ -176,10 +199,7 @@ static void draw_spread(struct chart *chart, const struct calibration *found,
         left = fmin(left, medians[i]);
     }
     const double across = fmax(right - left, 1e-3 * right);
-    chart->low[0] = left - MARGIN * across;
-    chart->high[0] = right + MARGIN * across;
-    chart->low[1] = 0.0;
-    chart->high[1] = 1.25 * top;
+    set_axes(chart, left - MARGIN * across, right + MARGIN * across, 0.0, 1.25 * top);
     draw_frame(chart, "Spread against level, and curves", "median stored number of a tile",
                "between its quartiles");
     for (size_t i = 0; i < count; i++)
@@ -192,7 +212,7 @@ static void draw_spread(struct chart *chart, const struct calibration *found,
             if (!fit->levels || is_chosen != (pass == 1))
                 continue;
             speckle_law_init(law, fit->looks, fit->texture);
-            double quartiles[3], before[2] = {NAN, NAN};
+            double quartiles[3], pen[2] = {NAN, NAN};
             for (int k = 0; k < 3; k++)
                 quartiles[k] = speckle_law_quantile(law, 0.25 * (k + 1));
             const struct colour colour = is_chosen ? blue : family_colours[family];
@@ -202,17 +222,14 @@ static void draw_spread(struct chart *chart, const struct calibration *found,
                 const double level =
                     curve_log_intensity((enum curve_family)family, fit->parameter, full, median) -
                     quartiles[1];
-                const double now[2] = {median,
-                                       curve_value((enum curve_family)family, fit->parameter, full,
-                                                   level + quartiles[2]) -
-                                           curve_value((enum curve_family)family, fit->parameter,
-                                                       full, level + quartiles[0])};
-                draw_piece(chart, before, now, is_chosen ? 3.0 : 1.5, colour);
-                before[0] = now[0];
-                before[1] = now[1];
+                const double spread = curve_value((enum curve_family)family, fit->parameter, full,
+                                                  level + quartiles[2]) -
+                                      curve_value((enum curve_family)family, fit->parameter, full,
+                                                  level + quartiles[0]);
+                draw_to(chart, pen, median, spread, is_chosen ? 3.0 : 1.5, colour);
             }
-            draw_legend(chart, is_chosen ? 0 : line++, false,
-                        family_text(found, (enum curve_family)family, text), colour);
+            draw_legend(chart, is_chosen ? 0 : line++, false, colour, "%s",
+                        family_text(found, (enum curve_family)family, text));
         }
 }
 
@@ -222,10 +239,7 @@ static void draw_histogram(struct chart *chart, const struct calibration *found)
     double top = 0.0;
     for (int i = 1; i + 1 < PAGE_BINS; i++)
         top = fmax(top, found->histogram[i]);
-    chart->low[0] = 0.0;
-    chart->high[0] = 1.04 * found->histogram_top;
-    chart->low[1] = 0.0;
-    chart->high[1] = 125.0 * top;
+    set_axes(chart, 0.0, 1.04 * found->histogram_top, 0.0, 125.0 * top);
     draw_frame(chart, "Stored numbers", "stored number", "% of the pixels");
     for (int i = 0; i < PAGE_BINS; i++) {
         const double value = (i + 0.5) / PAGE_BINS * found->histogram_top;
@@ -234,7 +248,7 @@ static void draw_histogram(struct chart *chart, const struct calibration *found)
         draw_piece(chart, base, tip, 1.6, grey);
     }
     if (found->full_scale.unseen) {
-        draw_legend(chart, 0, true, "no ceiling: no clipped pixels", ink);
+        draw_legend(chart, 0, true, ink, "no ceiling: no clipped pixels");
         return;
     }
     const double foot[2] = {found->full_scale.value, 0.0};
@@ -256,7 +270,6 @@ static void draw_law(struct chart *chart, const struct calibration *found,
     const size_t side = tiles->side, pixels = side * side;
     const double width = (LAW_HIGHEST - LAW_LOWEST) / LAW_BINS;
     double bins[LAW_BINS] = {0.0}, density, top = 0.0;
-    char text[TEXT_BYTES];
     for (size_t i = 0; i < tiles->count * pixels; i++) {
         const size_t at = (tiles->rows[i / pixels] + i % pixels / side) * swath->columns +
                           tiles->columns[i / pixels] + i % side;
@@ -271,37 +284,28 @@ static void draw_law(struct chart *chart, const struct calibration *found,
         speckle_law_below(law, LAW_LOWEST + (i + 0.5) * width, &density);
         top = fmax(top, fmax(density, bins[i]));
     }
-    chart->low[0] = LAW_LOWEST / log(10.0) * 10.0;
-    chart->high[0] = LAW_HIGHEST / log(10.0) * 10.0;
-    chart->low[1] = 0.0;
-    chart->high[1] = 1.25 * top;
+    set_axes(chart, LAW_LOWEST / log(10.0) * 10.0, LAW_HIGHEST / log(10.0) * 10.0, 0.0, 1.25 * top);
     draw_frame(chart, "Speckle, and the law fitted to it", "intensity over its tile's mean, dB",
                "density");
     const double decibels = 10.0 / log(10.0);
-    double before[2] = {NAN, NAN};
+    double pen[2] = {NAN, NAN};
     for (int i = 0; i < LAW_BINS; i++)
         draw_dot(chart, (LAW_LOWEST + (i + 0.5) * width) * decibels, bins[i], 5.0, grey);
     for (int i = 0; i <= CURVE_POINTS; i++) {
         const double x = LAW_LOWEST + (LAW_HIGHEST - LAW_LOWEST) * i / CURVE_POINTS;
         speckle_law_below(law, x, &density);
-        const double now[2] = {x * decibels, density};
-        draw_piece(chart, before, now, 2.5, blue);
-        before[0] = now[0];
-        before[1] = now[1];
+        draw_to(chart, pen, x * decibels, density, 2.5, blue);
     }
     if (found->looks.unseen)
-        snprintf(text, sizeof text, "looks not found, 1 assumed");
+        draw_legend(chart, 0, false, blue, "looks not found, 1 assumed");
     else
-        snprintf(text, sizeof text, "looks %.3g +- %.2g", found->looks.value, found->looks.error);
-    draw_legend(chart, 0, false, text, blue);
-    snprintf(text, sizeof text, "%s: %.2g +- %.1g %% of pixels off",
-             curve_fits(fit) ? "fits" : "does not fit", 100.0 * fit->misfit,
-             100.0 * fit->misfit_error);
-    draw_legend(chart, 1, false, text, blue);
-    if (fit->texture > 0.0) {
-        snprintf(text, sizeof text, "K shape %.3g", 1.0 / fit->texture);
-        draw_legend(chart, 2, false, text, blue);
-    }
+        draw_legend(chart, 0, false, blue, "looks %.3g +- %.2g", found->looks.value,
+                    found->looks.error);
+    draw_legend(chart, 1, false, blue, "%s: %.2g +- %.1g %% of pixels off",
+                curve_fits(fit) ? "fits" : "does not fit", 100.0 * fit->misfit,
+                100.0 * fit->misfit_error);
+    if (fit->texture > 0.0)
+        draw_legend(chart, 2, false, blue, "K shape %.3g", 1.0 / fit->texture);
 }
 
 static void draw_correlation(struct chart *chart, const struct calibration *found)
@@ -310,30 +314,22 @@ static void draw_correlation(struct chart *chart, const struct calibration *foun
     const struct colour colours[] = {blue, red};
     static const char *const names[] = {"along track", "range"};
     static const char *const units[] = {"rows", "columns"};
-    char text[TEXT_BYTES];
-    chart->low[0] = 0.0;
-    chart->high[0] = CALIBRATION_LAGS - 1;
-    chart->low[1] = -0.15;
-    chart->high[1] = 1.1;
+    set_axes(chart, 0.0, CALIBRATION_LAGS - 1, -0.15, 1.1);
     draw_frame(chart, "Correlation, with a Gaussian response", "pixels apart", "of intensity");
     for (int axis = 0; axis < 2; axis++) {
-        double before[2] = {NAN, NAN};
+        double pen[2] = {NAN, NAN};
         for (int i = 0; i <= CURVE_POINTS && !widths[axis]->unseen; i++) {
             const double x = (CALIBRATION_LAGS - 1.0) * i / CURVE_POINTS;
             const double ratio = x / widths[axis]->value;
-            const double now[2] = {x, exp(-2.0 * log(2.0) * ratio * ratio)};
-            draw_piece(chart, before, now, 1.5, colours[axis]);
-            before[0] = now[0];
-            before[1] = now[1];
+            draw_to(chart, pen, x, exp(-2.0 * log(2.0) * ratio * ratio), 1.5, colours[axis]);
         }
         for (int lag = 0; lag < CALIBRATION_LAGS; lag++)
             draw_dot(chart, lag, found->correlation[axis][lag], 6.0, colours[axis]);
         if (widths[axis]->unseen)
-            snprintf(text, sizeof text, "%s: not seen", names[axis]);
+            draw_legend(chart, axis, true, colours[axis], "%s: not seen", names[axis]);
         else
-            snprintf(text, sizeof text, "%s: %.3g +- %.2g %s", names[axis], widths[axis]->value,
-                     widths[axis]->error, units[axis]);
-        draw_legend(chart, axis, true, text, colours[axis]);
+            draw_legend(chart, axis, true, colours[axis], "%s: %.3g +- %.2g %s", names[axis],
+                        widths[axis]->value, widths[axis]->error, units[axis]);
     }
 }
 
@@ -341,7 +337,6 @@ static void draw_water(struct chart *chart, const struct calibration *found)
 {
     static const char title[] = "First return";
     const struct first_returns *returns = &found->returns;
-    char text[TEXT_BYTES];
     double lowest = INFINITY, highest = 0.0;
     if (!returns->columns) {
         draw_reason(chart, title, found->nadir_column.unseen);
@@ -351,33 +346,26 @@ static void draw_water(struct chart *chart, const struct calibration *found)
         lowest = fmin(lowest, returns->columns[row]);
         highest = fmax(highest, returns->columns[row]);
     }
-    chart->low[0] = 0.0;
-    chart->high[0] = (double)found->rows;
-    chart->low[1] = lowest - 0.1 * (highest - lowest) - 2.0;
-    chart->high[1] = highest + 0.25 * (highest - lowest) + 2.0;
+    set_axes(chart, 0.0, (double)found->rows, lowest - 0.1 * (highest - lowest) - 2.0,
+             highest + 0.25 * (highest - lowest) + 2.0);
     draw_frame(chart, title, "row", "columns from the nadir");
-    for (size_t row = 1; row < found->rows; row++) {
-        const double from[2] = {(double)row - 1.0, returns->columns[row - 1]};
-        const double to[2] = {(double)row, returns->columns[row]};
-        draw_piece(chart, from, to, 1.5, blue);
-    }
-    if (!found->nadir_column.unseen) {
-        snprintf(text, sizeof text, "nadir column %.5g +- %.2g", found->nadir_column.value,
-                 found->nadir_column.error);
-        draw_legend(chart, 0, true, text, ink);
-    }
+    double pen[2] = {NAN, NAN};
+    for (size_t row = 0; row < found->rows; row++)
+        draw_to(chart, pen, (double)row, returns->columns[row], 1.5, blue);
+    const bool has_nadir = !found->nadir_column.unseen;
+    if (has_nadir)
+        draw_legend(chart, 0, true, ink, "nadir column %.5g +- %.2g", found->nadir_column.value,
+                    found->nadir_column.error);
     if (!found->altitude_m.unseen) {
-        snprintf(text, sizeof text, "altitude %.3g m (median)", found->altitude_m.value);
-        draw_legend(chart, !found->nadir_column.unseen, true, text, ink);
-        snprintf(text, sizeof text, "%.3g...%.3g m (5...95 %%)", found->altitude_ends_m[0],
-                 found->altitude_ends_m[1]);
-        draw_legend(chart, 1 + !found->nadir_column.unseen, true, text, ink);
+        draw_legend(chart, has_nadir, true, ink, "altitude %.3g m (median)",
+                    found->altitude_m.value);
+        draw_legend(chart, 1 + has_nadir, true, ink, "%.3g...%.3g m (5...95 %%)",
+                    found->altitude_ends_m[0], found->altitude_ends_m[1]);
     }
 }
 
 static void draw_gain(struct chart *chart, const struct calibration *found)
 {
-    char text[TEXT_BYTES];
     double lowest = 0.0, highest = 0.0;
     const bool has_floor = !found->noise_floor_db.unseen;
     for (size_t band = 0; band < found->gain_bands; band++)
@@ -387,10 +375,8 @@ static void draw_gain(struct chart *chart, const struct calibration *found)
         }
     if (has_floor)
         lowest += found->noise_floor_db.value;
-    chart->low[0] = 0.0;
-    chart->high[0] = (double)found->columns;
-    chart->low[1] = lowest - 0.1 * (highest - lowest) - 1.0;
-    chart->high[1] = highest + 0.3 * (highest - lowest) + 1.0;
+    set_axes(chart, 0.0, (double)found->columns, lowest - 0.1 * (highest - lowest) - 1.0,
+             highest + 0.3 * (highest - lowest) + 1.0);
     draw_frame(chart, "Level against range, and noise floor", "column", "over the median, dB");
     for (size_t band = 0; band < found->gain_bands; band++) {
         const double x = ((double)band + 0.5) * (double)found->columns / (double)found->gain_bands;
@@ -401,13 +387,11 @@ static void draw_gain(struct chart *chart, const struct calibration *found)
         if (has_floor)
             draw_dot(chart, x, found->gain_db[band] + found->noise_floor_db.value, 6.0, red);
     }
-    if (has_floor) {
-        snprintf(text, sizeof text, "noise floor %.3g +- %.2g dB, of %zu shadows",
-                 found->noise_floor_db.value, found->noise_floor_db.error, found->shadows);
-    } else {
-        snprintf(text, sizeof text, "noise floor not found");
-    }
-    draw_legend(chart, 0, true, text, red);
+    if (has_floor)
+        draw_legend(chart, 0, true, red, "noise floor %.3g +- %.2g dB, of %zu shadows",
+                    found->noise_floor_db.value, found->noise_floor_db.error, found->shadows);
+    else
+        draw_legend(chart, 0, true, red, "noise floor not found");
 }
 
 /* Writes one line that sums up the calibration. */
