@@ -1,6 +1,5 @@
 /* The check that all scenes of a campaign can be made, and the hash of all that images depend on. A
  * trial is a scene at one end of all distributions, read but not injected. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 

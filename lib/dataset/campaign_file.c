@@ -1,6 +1,5 @@
 /* The tables of keys of campaign files. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

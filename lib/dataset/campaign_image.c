@@ -10,7 +10,6 @@
 #include "dataset/data_set.h"
 #include "dataset/run.h"
 #include "image/raster.h"
-#include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
 void campaign_image_clear(struct campaign_image *image)

@@ -10,7 +10,6 @@
 
 #include "base/file.h"
 #include "base/json_document.h"
-#include "base/memory.h"
 #include "dataset/data_set.h"
 #include "dataset/labels.h"
 #include "dataset/run.h"

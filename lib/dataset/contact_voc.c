@@ -7,7 +7,6 @@
 
 #include <expat.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "dataset/contact_reader.h"
 

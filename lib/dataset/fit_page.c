@@ -12,7 +12,6 @@
 #include "dataset/fit.h"
 #include "dataset/run.h"
 #include "image/canvas.h"
-#include "image/plot.h"
 #include "measure/contacts.h"
 #include "swath/raster_file.h"
 

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/text.h"
 #include "dataset/fit.h"
 
 #define CLEAR_LEAST  24 /* clear contacts of a round */

@@ -2,7 +2,6 @@
 #include "dataset/run.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -9,7 +9,6 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "dataset/run.h"
 #include "measure/calibration.h"
 #include "schema/keys.h"

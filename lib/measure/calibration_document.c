@@ -1,7 +1,6 @@
 /* A calibration as a document: the keys that a scene takes, and what was measured. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/json_document.h"

@@ -6,7 +6,6 @@
 
 #include "base/json_document.h"
 #include "base/text.h"
-#include "schema/scene_file.h"
 
 #define KEYS_LISTED 40 /* keys of a section that a message lists at most */
 

@@ -5,7 +5,6 @@
 #include "schema/keys.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* Tolerance for 1/pi written in decimal digits, whose last bit may be too large. */
 #define ENERGY_SLACK (1.0 + 1e-12)

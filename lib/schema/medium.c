@@ -1,6 +1,5 @@
 /* The keys of the water: one sound speed, layers or a profile, and the absorption. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "schema/keys.h"

@@ -1,10 +1,8 @@
 /* The keys of meshes: the file, and the meaning of its numbers. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "schema/keys.h"
 
 /* The range of target lengths that a mesh without a unit may have. */

@@ -4,11 +4,9 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "scene/placement.h"
 #include "scene/shapes/shape.h"
 #include "schema/keys.h"
-#include "schema/scene_file.h"
 
 #define LEVELS_MAX 8 /* levels of lists of parts within lists */
 

@@ -1,12 +1,10 @@
 /* The keys of the whole file, of its image and of the injection. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/text.h"
 #include "scene/element_plan.h"
 #include "schema/keys.h"
-#include "schema/scene_file.h"
 #include "schema/tables.h"
 #include "swath/geometry_notes.h"
 #include "swath/recording.h"

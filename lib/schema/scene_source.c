@@ -6,7 +6,6 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "schema/keys.h"
 #include "schema/scene_file.h"
 

@@ -1,7 +1,6 @@
 #include "swath/decoder.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 
 #ifdef BUILT_FOLDER
 char *decoder_path(void)

@@ -1,6 +1,5 @@
 #include "swath/raster_file.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
