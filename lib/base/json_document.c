@@ -117,13 +117,15 @@ const char *member_text(const json_t *object, const char *key)
     return text ? text : "";
 }
 
-sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
-                                   const char *path)
+sonject_status json_document_write(struct report *report, sonject_status status, json_t *document,
+                                   size_t digits, const char *path)
 {
-    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(digits));
+    const size_t flags = JSON_INDENT(2) | JSON_REAL_PRECISION(digits);
+    char *text = status == SONJECT_OK ? json_document_text(document, flags) : NULL;
     json_decref(document);
+    CHECK(status);
     CHECK_MEMORY(report, text, path);
-    const sonject_status status = file_write_whole(report, path, text, strlen(text));
+    status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;
 }

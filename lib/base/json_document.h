@@ -61,10 +61,11 @@ sonject_status json_document_hash(struct report *report, const json_t *document,
 /* Returns the text of a member, "" if there is none. */
 const char *member_text(const json_t *object, const char *key);
 
-/* Writes the document whole or not at all, indented, numbers with so many digits, and releases it.
- * Errors: STORAGE, MEMORY (also if the document is NULL). */
-sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
-                                   const char *path);
+/* Writes the document whole or not at all, indented, numbers with so many digits, if status, that
+ * of the steps which made it, is OK. Releases the document. Returns status or, as errors of its
+ * own, STORAGE and MEMORY (also if the document is NULL). */
+sonject_status json_document_write(struct report *report, sonject_status status, json_t *document,
+                                   size_t digits, const char *path);
 
 /* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
 sonject_status json_document_read(struct report *report, const char *path, json_t **document);

@@ -164,10 +164,7 @@ static sonject_status write_record(struct sonject_campaign *campaign,
                              {"because", json_text(image->reason)}));
     THEN(status, json_document_hash(campaign->report, record, JSON_COMPACT, hash));
     json_add(&record, "xxh3", json_string(hash));
-    if (status == SONJECT_OK)
-        return json_document_write(campaign->report, record, 9, path);
-    json_decref(record);
-    return status;
+    return json_document_write(campaign->report, status, record, 9, path);
 }
 
 static int jpeg_quality_of(const struct sonject_campaign *campaign,

@@ -108,7 +108,7 @@ static sonject_status write_times(const struct sweep *sweep)
     json_t *document = JSON_OBJECT(
         {"images_made", json_count(sweep->made)}, {"seconds", json_number(elapsed)},
         {"images_per_second", json_number(elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0)});
-    return json_document_write(sweep->campaign->report, document, 9, path);
+    return json_document_write(sweep->campaign->report, SONJECT_OK, document, 9, path);
 }
 
 /* Writes the documents of the whole. *is_finished: they were there before. */

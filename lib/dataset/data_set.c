@@ -197,7 +197,7 @@ sonject_status data_set_begin(struct data_set *set, struct sonject_campaign *cam
     if (file_exists(path))
         status = check_head(campaign, folder, overwrites, &is_same);
     if (status == SONJECT_OK && !is_same)
-        status = json_document_write(report, head_of(campaign), 9, path);
+        status = json_document_write(report, status, head_of(campaign), 9, path);
     THEN(status, data_set_open(set, report, folder));
     THEN(status, draw_swaths(campaign, folder));
     for (size_t i = 0; status == SONJECT_OK && i < plan->split_count; i++)
@@ -515,10 +515,7 @@ static sonject_status write_last(const struct data_set *set)
     for (size_t i = 0; i < COUNT(kept); i++)
         json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
     json_add(&document, "files", files);
-    if (status == SONJECT_OK)
-        return json_document_write(set->report, document, 9, path);
-    json_decref(document);
-    return status;
+    return json_document_write(set->report, status, document, 9, path);
 }
 
 sonject_status data_set_finish(struct data_set *set)

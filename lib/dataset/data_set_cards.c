@@ -241,8 +241,5 @@ sonject_status write_croissant(const struct data_set *set, const char *const *na
         {"description", json_string("Sonar images with injected targets, a campaign of sonject.")},
         {"identifier", json_string(member_text(set->head, "hash"))}, {"distribution", files},
         {"recordSet", records});
-    if (status == SONJECT_OK)
-        return json_document_write(set->report, card, 9, path);
-    json_decref(card);
-    return status;
+    return json_document_write(set->report, status, card, 9, path);
 }

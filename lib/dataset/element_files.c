@@ -110,10 +110,7 @@ static sonject_status write_files(struct report *report, const struct scene *sce
                            layout->elements.form == SONJECT_SERIES_BASEBAND, shape, 3, series));
     THEN(status, file_list_add(&files, report, folder, SERIES_FILE, true));
     THEN(status, earlier_describe(report, &document, inputs, files, scene));
-    if (status == SONJECT_OK)
-        status = json_document_write(report, document, 17, document_path);
-    else
-        json_decref(document);
+    status = json_document_write(report, status, document, 17, document_path);
     earlier_tidy(folder, DOCUMENT, earlier, files);
     json_decref(files);
     return status;

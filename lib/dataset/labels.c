@@ -370,7 +370,7 @@ sonject_status labels_write(struct report *report, const struct image_labels *la
     struct growing_text text = {NULL, 0, 0, false};
     switch (file) {
     case LABEL_COCO:
-        return json_document_write(report, coco_document(labels, classes), 12, path);
+        return json_document_write(report, SONJECT_OK, coco_document(labels, classes), 12, path);
     case LABEL_CONTACTS:
         add_csv(&text, labels);
         break;

@@ -204,7 +204,7 @@ json_t *truth_document(const struct run_facts *facts)
 
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
 {
-    return json_document_write(report, truth_document(facts), TRUTH_DIGITS, path);
+    return json_document_write(report, SONJECT_OK, truth_document(facts), TRUTH_DIGITS, path);
 }
 
 static json_t *options_document(const struct scene *scene, const sonject_statistics *statistics)
@@ -311,8 +311,5 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     }
     const sonject_status status =
         earlier_describe(report, &document, facts->inputs, facts->files, facts->scene);
-    if (status == SONJECT_OK)
-        return json_document_write(report, document, 12, path);
-    json_decref(document);
-    return status;
+    return json_document_write(report, status, document, 12, path);
 }
