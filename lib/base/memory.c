@@ -30,6 +30,18 @@ void *grow_doubling(void *list, size_t count, size_t size)
     return size_multiply(count > 0 ? 2 * count : 1, size, &bytes) ? realloc(list, bytes) : NULL;
 }
 
+sonject_status grow_list(struct report *report, void *list, size_t count, size_t size,
+                         const char *what)
+{
+    void *old;
+    memcpy(&old, list, sizeof old);
+    char *grown = grow_doubling(old, count, size);
+    CHECK_MEMORY(report, grown, what);
+    memset(grown + count * size, 0, size);
+    memcpy(list, &grown, sizeof grown);
+    return SONJECT_OK;
+}
+
 bool memory_is_short(void)
 {
     void *volatile much = allocate_array(1, (size_t)512 << 20); /* volatile: not optimised away */

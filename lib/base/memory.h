@@ -21,6 +21,11 @@ void *allocate_array(size_t count, size_t size);
  * function grows: room doubles when full. NULL if out of memory; the list then stays as it was. */
 void *grow_doubling(void *list, size_t count, size_t size);
 
+/* Grows *list, which only this function and grow_doubling grow, from count elements of size bytes
+ * by one of zeros. what: see report_out_of_memory. Errors: MEMORY. */
+sonject_status grow_list(struct report *report, void *list, size_t count, size_t size,
+                         const char *what);
+
 /* Returns whether less than half a gigabyte is left, which loading a large library may need. */
 bool memory_is_short(void);
 

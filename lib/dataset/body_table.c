@@ -107,10 +107,11 @@ static sonject_status read_body(struct body_reader *reader, const struct table_r
                                 "'%s' is not a number from 0 to 1e9",
                                 text_excerpt(excerpt, sizeof excerpt, field));
     }
-    CHECK(grow_list(reader->report, &distribution->texts, number, sizeof *distribution->texts));
+    CHECK(grow_list(reader->report, &distribution->texts, number, sizeof *distribution->texts,
+                    "the campaign"));
     CHECK(grow_list(reader->report, &distribution->cumulative, number,
-                    sizeof *distribution->cumulative));
-    CHECK(grow_list(reader->report, &table->cells, number, sizeof *table->cells));
+                    sizeof *distribution->cumulative, "the campaign"));
+    CHECK(grow_list(reader->report, &table->cells, number, sizeof *table->cells, "the campaign"));
     distribution->cumulative[number] = weight;
     snprintf(text, sizeof text, "%zu", number);
     distribution->texts[number] = copy_text(text);

@@ -314,9 +314,6 @@ sonject_status campaign_read_swaths(struct reader *reader, const struct tree_nod
 sonject_status campaign_read_splits(struct reader *reader, const struct tree_node *node,
                                     void *structure);
 
-/* Grows *list, which has count elements of size bytes, by one element of zeros. Errors: MEMORY. */
-sonject_status grow_list(struct report *report, void *list, size_t count, size_t size);
-
 /* Returns whether a split may have this name. Folders and documents use the name. */
 bool is_split_name(const char *name);
 

@@ -11,17 +11,6 @@
 
 #define OBJECT_PREFIX "objects[]."
 
-sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
-{
-    void *old;
-    memcpy(&old, list, sizeof old);
-    char *grown = grow_doubling(old, count, size);
-    CHECK_MEMORY(report, grown, "the campaign");
-    memset(grown + count * size, 0, size);
-    memcpy(list, &grown, sizeof grown);
-    return SONJECT_OK;
-}
-
 /* Returns whether the campaign itself sets a key. */
 static bool is_taken(const char *key, bool is_object)
 {
@@ -81,7 +70,8 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
                                 const struct tree_entry *entry, const char *key,
                                 struct draws *draws)
 {
-    CHECK(grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list));
+    CHECK(
+        grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list, "the campaign"));
     struct distribution *distribution = &draws->list[draws->count++];
     distribution->stream = ++campaign->streams;
     const struct draws others = {draws->list, draws->count - 1};

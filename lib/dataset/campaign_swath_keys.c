@@ -32,7 +32,8 @@ static sonject_status read_swath_keys(struct reader *reader, const struct tree_n
         struct growing_text pair = {NULL, 0, 0, false};
         if (campaign_check_entry(reader, entry, entry->key, false) != SONJECT_OK)
             continue;
-        CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+        CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys,
+                        "the campaign"));
         CHECK(tree_override_text(reader->report, &entry->value, &value));
         growing_text_add(&pair, "%s=%s", entry->key, value);
         free(value);
@@ -75,7 +76,8 @@ static const struct section box_section = {
 static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
 {
     struct swath_plan *swath = structure;
-    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
+    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid,
+                    "the campaign"));
     struct avoided_box *box = &swath->avoid[swath->avoid_count++];
     box->along_track_m[0] = box->slant_range_m[0] = NAN;
     return read_section(reader, &box_section, node, box);
@@ -127,7 +129,7 @@ static sonject_status read_swath(struct reader *reader, const struct tree_node *
 {
     struct campaign *campaign = structure;
     CHECK(grow_list(reader->report, &campaign->swaths, campaign->swath_count,
-                    sizeof *campaign->swaths));
+                    sizeof *campaign->swaths, "the campaign"));
     struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
     swath->place = node->place;
     const sonject_status status = read_section(reader, &campaign_swath_section, node, swath);

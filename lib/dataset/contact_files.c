@@ -169,10 +169,8 @@ sonject_status contact_reader_add(struct contact_reader *reader, const char *pla
     if (set->count == CONTACTS_MAX)
         return input_failure(reader->report, place, "more than %d contacts; leave some out",
                              CONTACTS_MAX);
-    struct labelled_contact *contacts = grow_doubling(set->contacts, set->count, sizeof *contacts);
-    CHECK_MEMORY(reader->report, contacts, "contacts");
-    set->contacts = contacts;
-    struct labelled_contact *contact = &contacts[set->count++];
+    CHECK(grow_list(reader->report, &set->contacts, set->count, sizeof *set->contacts, "contacts"));
+    struct labelled_contact *contact = &set->contacts[set->count++];
     *contact = (struct labelled_contact){.image = image->number,
                                          .part = part,
                                          .side = image->side,

@@ -75,9 +75,8 @@ static sonject_status add_value(struct statistics_page *page, const char *name, 
         strcpy(series->unit, unit);
         page->series_count++;
     }
-    double *grown = grow_doubling(series->values, series->count, sizeof *grown);
-    CHECK_MEMORY(page->set->report, grown, "the report");
-    series->values = grown;
+    CHECK(grow_list(page->set->report, &series->values, series->count, sizeof *series->values,
+                    "the report"));
     series->values[series->count++] = value;
     return SONJECT_OK;
 }

@@ -50,7 +50,7 @@ static sonject_status add_number(struct fit_draws *draws, struct report *report,
         return tree_failure(&draws->campaign->tree, node->place, like->key,
                             "is changed by the fit: write it into the campaign's file instead of "
                             "giving it by --set");
-    CHECK(grow_list(report, &draws->numbers, draws->count, sizeof *draws->numbers));
+    CHECK(grow_list(report, &draws->numbers, draws->count, sizeof *draws->numbers, "the campaign"));
     struct fitted_number *number = &draws->numbers[draws->count++];
     *number = *like;
     number->node = node;
@@ -324,7 +324,7 @@ static size_t scalar_length(const char *at, const struct tree_node *node)
 static sonject_status add_splice(struct splice_list *list, struct report *report, size_t offset,
                                  size_t length, const char *text)
 {
-    CHECK(grow_list(report, &list->splices, list->count, sizeof *list->splices));
+    CHECK(grow_list(report, &list->splices, list->count, sizeof *list->splices, "the campaign"));
     struct splice *splice = &list->splices[list->count++];
     splice->offset = offset;
     splice->length = length;

@@ -97,8 +97,8 @@ static void add_key_of(struct drawing *drawing, struct tree_place place, const c
     struct image_plan *plan = drawing->plan;
     if (drawing->status == SONJECT_OK && !text)
         drawing->status = report_out_of_memory(drawing->report, "an image's scene");
-    THEN(drawing->status,
-         grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys));
+    THEN(drawing->status, grow_list(drawing->report, &plan->keys, plan->key_count,
+                                    sizeof *plan->keys, "the campaign"));
     if (drawing->status == SONJECT_OK)
         plan->keys[plan->key_count++] = (struct plan_key){text, place, table};
     else

@@ -49,15 +49,13 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
     if (tree->node_count >= TREE_NODES_MAX)
         return tree_failure(tree, place, path->text,
                             "is one value too many: a file may have %d; split it", TREE_NODES_MAX);
-    struct tree_entry *entries = grow_doubling(node->entries, node->count, sizeof *entries);
-    CHECK_MEMORY(tree->report, entries, "the scene file");
-    node->entries = entries;
+    CHECK(grow_list(tree->report, &node->entries, node->count, sizeof *node->entries,
+                    "the scene file"));
     char *own_key = key ? copy_text(key) : NULL;
     if (key && !own_key)
         return report_out_of_memory(tree->report, "the scene file");
     tree->node_count++;
     *entry = &node->entries[node->count++];
-    memset(*entry, 0, sizeof **entry);
     (*entry)->key = own_key;
     (*entry)->place = place;
     (*entry)->value.place = place;

@@ -97,9 +97,8 @@ sonject_status recording_add(struct report *report, struct swath_file *file,
     struct raster_layout *layout = &file->layout;
     if (samples == 0) {
         struct ping_list *empty = &recording->empty;
-        uint64_t *numbers = grow_doubling(empty->numbers, (size_t)empty->count, sizeof *numbers);
-        CHECK_MEMORY(report, numbers, "the pings");
-        empty->numbers = numbers;
+        CHECK(grow_list(report, &empty->numbers, (size_t)empty->count, sizeof *empty->numbers,
+                        "the pings"));
         empty->numbers[empty->count] = layout->rows + empty->count;
         empty->count++;
         return SONJECT_OK;
@@ -108,12 +107,8 @@ sonject_status recording_add(struct report *report, struct swath_file *file,
         return recording_damaged(report, file, place, "a ping without slant range");
     CHECK(check_same(report, file, ping, samples));
     const size_t rows = (size_t)layout->rows;
-    struct recorded_ping *pings = grow_doubling(recording->pings, rows, sizeof *pings);
-    CHECK_MEMORY(report, pings, "the pings");
-    recording->pings = pings;
-    uint64_t *places = grow_doubling(file->lines.places, rows, sizeof *places);
-    CHECK_MEMORY(report, places, "the pings");
-    file->lines.places = places;
+    CHECK(grow_list(report, &recording->pings, rows, sizeof *recording->pings, "the pings"));
+    CHECK(grow_list(report, &file->lines.places, rows, sizeof *file->lines.places, "the pings"));
     recording->pings[layout->rows] = *ping;
     file->lines.places[layout->rows++] = place;
     recording->rows = layout->rows;
