@@ -291,7 +291,10 @@ struct splice {
     char text[160];
 };
 
+/* The changes to the text of a campaign's file. */
 struct splice_list {
+    struct report *report;
+    const struct fit_draws *draws;
     struct splice *splices; /* owned */
     size_t count;
 };
@@ -321,10 +324,11 @@ static size_t scalar_length(const char *at, const struct tree_node *node)
     return length + 1;
 }
 
-static sonject_status add_splice(struct splice_list *list, struct report *report, size_t offset,
-                                 size_t length, const char *text)
+static sonject_status add_splice(struct splice_list *list, size_t offset, size_t length,
+                                 const char *text)
 {
-    CHECK(grow_list(report, &list->splices, list->count, sizeof *list->splices, "the campaign"));
+    CHECK(grow_list(list->report, &list->splices, list->count, sizeof *list->splices,
+                    "the campaign"));
     struct splice *splice = &list->splices[list->count++];
     splice->offset = offset;
     splice->length = length;
@@ -332,31 +336,29 @@ static sonject_status add_splice(struct splice_list *list, struct report *report
     return SONJECT_OK;
 }
 
-static sonject_status replace_scalar(struct splice_list *list, struct report *report,
-                                     const char *text, const struct tree_node *node,
+static sonject_status replace_scalar(struct splice_list *list, const struct tree_node *node,
                                      const char *value)
 {
     if (node->place.override)
         return report_failure(
-            report, SONJECT_ERROR_INPUT,
+            list->report, SONJECT_ERROR_INPUT,
             "--set %s gives a key that the fit changes: write it into the campaign's file",
             node->place.override);
-    const size_t offset = offset_of(text, node->place);
-    return add_splice(list, report, offset, scalar_length(text + offset, node), value);
+    const size_t offset = offset_of(list->draws->text, node->place);
+    return add_splice(list, offset, scalar_length(list->draws->text + offset, node), value);
 }
 
 /* Adds "key: value" before a section's first key, in the same style: on a line of its own, or
  * between braces. In the file's own section, the pair goes to the end. */
-static sonject_status insert_key(struct splice_list *list, struct report *report,
-                                 const struct fit_draws *draws, const struct tree_node *section,
+static sonject_status insert_key(struct splice_list *list, const struct tree_node *section,
                                  const char *pair)
 {
-    const char *text = draws->text;
-    const struct tree_node *root = &draws->campaign->tree.root;
+    const char *text = list->draws->text;
+    const struct tree_node *root = &list->draws->campaign->tree.root;
     const struct tree_entry *first = &section->entries[0];
     if (section->place.override || first->place.override)
         return report_failure(
-            report, SONJECT_ERROR_INPUT,
+            list->report, SONJECT_ERROR_INPUT,
             "--set %s gives a key that the fit changes: write it into the campaign's file",
             first->place.override ? first->place.override : section->place.override);
     const size_t offset = offset_of(text, first->place);
@@ -365,29 +367,27 @@ static sonject_status insert_key(struct splice_list *list, struct report *report
     if (!is_flow && section == root) {
         const size_t end = strlen(text);
         snprintf(line, sizeof line, "%s%s\n", end > 0 && text[end - 1] != '\n' ? "\n" : "", pair);
-        return add_splice(list, report, end, 0, line);
+        return add_splice(list, end, 0, line);
     }
     snprintf(line, sizeof line, is_flow ? "%s, " : "%s\n%*s", pair,
              is_flow ? 0 : (int)first->place.column - 1, "");
-    return add_splice(list, report, offset, 0, line);
+    return add_splice(list, offset, 0, line);
 }
 
 /* Sets a key in a section of the campaign, or adds a line with the section at the file's end. */
-static sonject_status set_key(struct splice_list *list, const struct fit_draws *draws,
-                              struct report *report, const char *name, const char *key,
+static sonject_status set_key(struct splice_list *list, const char *name, const char *key,
                               const char *value)
 {
-    const struct tree_node *section = section_of(&draws->campaign->tree.root, name);
+    const struct tree_node *section = section_of(&list->draws->campaign->tree.root, name);
     const struct tree_entry *entry = section ? tree_find(section, key) : NULL;
     char pair[160];
     if (entry && entry->value.kind == TREE_TEXT)
-        return replace_scalar(list, report, draws->text, &entry->value, value);
+        return replace_scalar(list, &entry->value, value);
     snprintf(pair, sizeof pair, "%s: %s", key, value);
     if (section && section->count > 0)
-        return insert_key(list, report, draws, section, pair);
+        return insert_key(list, section, pair);
     snprintf(pair, sizeof pair, "%s: {%s: %s}", name, key, value);
-    const struct tree_node *root = &draws->campaign->tree.root;
-    return insert_key(list, report, draws, root, pair);
+    return insert_key(list, &list->draws->campaign->tree.root, pair);
 }
 
 /* Writes a value with three significant digits and a unit. */
@@ -398,9 +398,9 @@ static const char *write_value(char text[48], double value, const char *unit)
     return text;
 }
 
-static sonject_status splice_levels(struct splice_list *list, const struct fit_draws *draws,
-                                    struct report *report)
+static sonject_status splice_levels(struct splice_list *list)
 {
+    const struct fit_draws *draws = list->draws;
     const struct tree_node *root = &draws->campaign->tree.root;
     const struct tree_entry *targets = tree_find(root, "targets");
     char ends[2][48], pair[160];
@@ -414,18 +414,17 @@ static sonject_status splice_levels(struct splice_list *list, const struct fit_d
         if (!draws->lacks_level[i])
             continue;
         if (section && section->count > 0) {
-            CHECK(insert_key(list, report, draws, section, pair));
+            CHECK(insert_key(list, section, pair));
             continue;
         }
         snprintf(whole, sizeof whole, "draw: {%s}", pair);
-        CHECK(insert_key(list, report, draws, item, whole));
+        CHECK(insert_key(list, item, whole));
     }
     return SONJECT_OK;
 }
 
 /* Sets the limits of a section, in place of any that the section has. */
-static sonject_status splice_ratio(struct splice_list *list, const struct fit_draws *draws,
-                                   struct report *report, const struct tree_node *section,
+static sonject_status splice_ratio(struct splice_list *list, const struct tree_node *section,
                                    const struct ratio_limits *ratio)
 {
     const struct tree_entry *there = tree_find(section, RATIO_KEY);
@@ -436,17 +435,16 @@ static sonject_status splice_ratio(struct splice_list *list, const struct fit_dr
     write_value(ends[1], ratio->most, "");
     snprintf(pair, sizeof pair, RATIO_KEY ": [%s, %s]", ends[0], ends[1]);
     if (!there)
-        return insert_key(list, report, draws, section, pair);
+        return insert_key(list, section, pair);
     for (size_t i = 0; i < 2; i++)
-        CHECK(replace_scalar(list, report, draws->text, &there->value.entries[i].value, ends[i]));
+        CHECK(replace_scalar(list, &there->value.entries[i].value, ends[i]));
     return SONJECT_OK;
 }
 
-static sonject_status splice_selection(struct splice_list *list, const struct fit_draws *draws,
-                                       struct report *report,
+static sonject_status splice_selection(struct splice_list *list,
                                        const struct fitted_selection *selection)
 {
-    const struct tree_node *root = &draws->campaign->tree.root;
+    const struct tree_node *root = &list->draws->campaign->tree.root;
     const struct tree_node *visible = section_of(root, "visible");
     const struct tree_entry *swaths = tree_find(root, "swaths");
     char values[2][48], pair[160];
@@ -455,17 +453,16 @@ static sonject_status splice_selection(struct splice_list *list, const struct fi
     if (isfinite(selection->highlight_db) && isfinite(selection->shadow_db) && !visible) {
         snprintf(pair, sizeof pair, "visible: {highlight: %s, shadow: %s, otherwise: redraw}",
                  values[0], values[1]);
-        CHECK(insert_key(list, report, draws, root, pair));
+        CHECK(insert_key(list, root, pair));
     } else {
         if (isfinite(selection->highlight_db))
-            CHECK(set_key(list, draws, report, "visible", "highlight", values[0]));
+            CHECK(set_key(list, "visible", "highlight", values[0]));
         if (isfinite(selection->shadow_db))
-            CHECK(set_key(list, draws, report, "visible", "shadow", values[1]));
+            CHECK(set_key(list, "visible", "shadow", values[1]));
     }
-    CHECK(splice_ratio(list, draws, report, section_of(root, "chip"), &selection->chip));
+    CHECK(splice_ratio(list, section_of(root, "chip"), &selection->chip));
     for (size_t i = 0; selection->swaths && i < swaths->value.count; i++)
-        CHECK(splice_ratio(list, draws, report, &swaths->value.entries[i].value,
-                           &selection->swaths[i]));
+        CHECK(splice_ratio(list, &swaths->value.entries[i].value, &selection->swaths[i]));
     return SONJECT_OK;
 }
 
@@ -477,22 +474,21 @@ static int compare_splices(const void *a, const void *b)
                                   : strcmp(x->text, y->text);
 }
 
-static sonject_status make_splices(struct splice_list *list, const struct fit_draws *draws,
-                                   struct report *report, const struct fitted_selection *selection)
+static sonject_status make_splices(struct splice_list *list,
+                                   const struct fitted_selection *selection)
 {
+    const struct fit_draws *draws = list->draws;
     char value[48];
     for (size_t i = 0; i < draws->count; i++) {
         const struct fitted_number *number = &draws->numbers[i];
-        CHECK(replace_scalar(list, report, draws->text, number->node,
-                             write_value(value, number->value, number->unit)));
+        CHECK(replace_scalar(list, number->node, write_value(value, number->value, number->unit)));
     }
     if (draws->has_added) {
-        CHECK(splice_levels(list, draws, report));
+        CHECK(splice_levels(list));
         if (draws->lacks_floor)
-            CHECK(set_key(list, draws, report, "draw", FLOOR_KEY,
-                          write_value(value, draws->floor_db, " dB")));
+            CHECK(set_key(list, "draw", FLOOR_KEY, write_value(value, draws->floor_db, " dB")));
     }
-    CHECK(splice_selection(list, draws, report, selection));
+    CHECK(splice_selection(list, selection));
     qsort(list->splices, list->count, sizeof *list->splices, compare_splices);
     return SONJECT_OK;
 }
@@ -501,10 +497,10 @@ sonject_status fit_draws_text(const struct fit_draws *draws, struct report *repo
                               const struct fitted_selection *selection, const char *comment,
                               char **text)
 {
-    struct splice_list list = {NULL, 0};
+    struct splice_list list = {report, draws, NULL, 0};
     struct growing_text made = {NULL, 0, 0, false};
     size_t at = strncmp(draws->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0; /* no byte order mark */
-    const sonject_status status = make_splices(&list, draws, report, selection);
+    const sonject_status status = make_splices(&list, selection);
     growing_text_add(&made, "%s", comment);
     for (size_t i = 0; status == SONJECT_OK && i < list.count; i++) {
         growing_text_add(&made, "%.*s%s", (int)(list.splices[i].offset - at), draws->text + at,
