@@ -31,19 +31,18 @@ void contact_chip_clear(struct contact_chip *chip)
 }
 
 /* Returns the part around a label of an image of rows x columns. */
-static struct window_box chip_window(const sonject_box *label, size_t rows, size_t columns)
+static sonject_box chip_window(const sonject_box *label, size_t rows, size_t columns)
 {
-    const struct window_box box = window_box_of(label);
-    return box_with_margin(&box, CHIP_MARGIN, rows, columns);
+    return box_with_margin(label, CHIP_MARGIN, rows, columns);
 }
 
 /* Cuts the intensities of a window out of pixels with `columns` columns a row, so that range grows
  * to the right. first_column: column of the first pixel in the geometry's image. ceiling: amplitude
  * at which files cut the pixels. */
 static sonject_status cut_chip(struct report *report, const float *pixels, bool is_complex,
-                               size_t columns, const struct window_box *window,
-                               const sonject_box *label, const sonject_geometry_params *geometry,
-                               size_t first_column, double ceiling, struct contact_chip *chip)
+                               size_t columns, const sonject_box *window, const sonject_box *label,
+                               const sonject_geometry_params *geometry, size_t first_column,
+                               double ceiling, struct contact_chip *chip)
 {
     const float most = (float)(ceiling * ceiling);
     const bool is_reversed = geometry_is_reversed(geometry);
@@ -97,7 +96,7 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
  * the whole image, where the altitude does not count. */
 static sonject_status read_image_scene(struct sonject_campaign *campaign, const char *image,
                                        const struct swath_plan *swath, uint32_t side,
-                                       const struct window_box *patch, bool tells_geometry,
+                                       const sonject_box *patch, bool tells_geometry,
                                        bool tells_altitude, struct scene *scene)
 {
     const size_t keys = swath ? swath->key_count : 0;
@@ -123,8 +122,9 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
         source.overrides[source.override_count++] = "sonar.altitude=from_file";
     if (patch) {
         snprintf(patch_text, sizeof patch_text,
-                 "patch={row: %zu, column: %zu, rows: %zu, columns: %zu}", patch->first_row,
-                 patch->first_column, patch->rows, patch->columns);
+                 "patch={row: %llu, column: %llu, rows: %llu, columns: %llu}",
+                 (unsigned long long)patch->first_row, (unsigned long long)patch->first_column,
+                 (unsigned long long)patch->rows, (unsigned long long)patch->columns);
         source.overrides[source.override_count++] = patch_text;
     }
     scene_init(scene);
@@ -245,9 +245,8 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
                              (unsigned long long)layout->rows, (unsigned long long)layout->columns,
                              (unsigned long long)label->first_row,
                              (unsigned long long)label->first_column);
-    const struct window_box window =
-        chip_window(label, (size_t)layout->rows, (size_t)layout->columns);
-    const struct window_box all = {0, 0, window.rows, window.columns};
+    const sonject_box window = chip_window(label, (size_t)layout->rows, (size_t)layout->columns);
+    const sonject_box all = {0, 0, window.rows, window.columns};
     sonject_box inner = *label;
     inner.first_row -= window.first_row;
     inner.first_column -= window.first_column;
@@ -288,11 +287,8 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     *is_seen = box->rows > 0;
     if (!*is_seen)
         return SONJECT_OK;
-    const struct window_box tight = window_box_of(box);
-    const struct window_box padded =
-        box_with_margin(&tight, (size_t)pad, result->rows, result->columns);
-    const sonject_box label = {padded.first_row, padded.first_column, padded.rows, padded.columns};
-    const struct window_box window = chip_window(&label, result->rows, result->columns);
+    const sonject_box label = box_with_margin(box, (size_t)pad, result->rows, result->columns);
+    const sonject_box window = chip_window(&label, result->rows, result->columns);
     CHECK(cut_chip(report, result->image, result->is_complex, result->columns, &window, &label,
                    &image->scene.geometry, (size_t)image->plan.chip.first_column, result->ceiling,
                    chip));
@@ -303,13 +299,12 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
 /* Returns where the contact of a label is searched for. */
 static struct contact_place place_of_label(const struct contact_chip *chip, uint32_t part)
 {
-    const struct window_box label = window_box_of(&chip->label);
     struct contact_place place = {0};
-    place.box = box_with_margin(&label, LABEL_MARGIN, chip->rows, chip->columns);
+    place.box = box_with_margin(&chip->label, LABEL_MARGIN, chip->rows, chip->columns);
     place.bright = place.box;
     if (part == LABELLED_HIGHLIGHT) {
         const size_t end = place.box.first_column + place.box.columns + SHADOW_REACH;
-        place.box = box_with_margin(&label, SHADOW_ROWS, chip->rows, chip->columns);
+        place.box = box_with_margin(&chip->label, SHADOW_ROWS, chip->rows, chip->columns);
         place.box.columns = (end < chip->columns ? end : chip->columns) - place.box.first_column;
         place.is_near = true;
     } else if (part == LABELLED_SHADOW) {
@@ -385,14 +380,10 @@ sonject_status contact_chip_measure(struct report *report, const struct contact_
     if (status != SONJECT_OK)
         return status;
     fill_extents(chip, &measures, extents);
-    const struct window_box highlight = window_box_of(&measures.highlight);
-    const struct window_box shadow = window_box_of(&measures.shadow);
-    const struct window_box both = highlight.rows == 0 ? shadow
-                                   : shadow.rows == 0  ? highlight
-                                                       : box_around(&highlight, &shadow);
-    const size_t rows = part == LABELLED_HIGHLIGHT ? highlight.rows
-                        : part == LABELLED_SHADOW  ? shadow.rows
-                                                   : both.rows;
+    const sonject_box both = box_around_parts(&measures.highlight, &measures.shadow);
+    const uint64_t rows = part == LABELLED_HIGHLIGHT ? measures.highlight.rows
+                          : part == LABELLED_SHADOW  ? measures.shadow.rows
+                                                     : both.rows;
     if (rows > 0)
         extents->pad_pixels = 0.5 * ((double)chip->label.rows - (double)rows);
     return SONJECT_OK;

@@ -218,9 +218,8 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
                                      const struct echoes *echoes, uint32_t number,
                                      sonject_object_truth *truth)
 {
-    const struct window_box box = window_box_of(&truth->both);
-    const struct window_box wide =
-        box_with_margin(&box, CONTACT_MARGIN + SEABED_MARGIN, echoes->rows, echoes->columns);
+    const sonject_box wide = box_with_margin(&truth->both, CONTACT_MARGIN + SEABED_MARGIN,
+                                             echoes->rows, echoes->columns);
     struct contact_place place;
     struct contact_image image;
     struct contact_sizes sizes;
@@ -231,7 +230,7 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
                                                   wide.first_row + i / wide.columns,
                                                   wide.first_column + i % wide.columns);
     memset(&place, 0, sizeof place);
-    place.box = box_with_margin(&box, CONTACT_MARGIN, echoes->rows, echoes->columns);
+    place.box = box_with_margin(&truth->both, CONTACT_MARGIN, echoes->rows, echoes->columns);
     place.box.first_row -= wide.first_row;
     place.box.first_column -= wide.first_column;
     place.bright = place.box;
@@ -256,9 +255,9 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
 }
 
 /* Returns a box counted from the corner of another that holds it. */
-static struct window_box box_within(const sonject_box *box, const struct window_box *wide)
+static sonject_box box_within(const sonject_box *box, const sonject_box *wide)
 {
-    struct window_box inner = window_box_of(box);
+    sonject_box inner = *box;
     inner.first_row -= wide->first_row;
     inner.first_column -= wide->first_column;
     return inner;
@@ -270,11 +269,10 @@ static sonject_status see_object(struct report *report, const struct injected_wi
                                  double ceiling, size_t water_columns, const bool *is_empty,
                                  sonject_object_truth *truth)
 {
-    const struct window_box box = window_box_of(&truth->both);
-    const struct window_box wide =
-        box_with_margin(&box, SEABED_MARGIN, result->at.rows, result->at.columns);
-    const struct window_box highlight = box_within(&truth->highlight, &wide);
-    const struct window_box shadow = box_within(&truth->shadow, &wide);
+    const sonject_box wide =
+        box_with_margin(&truth->both, SEABED_MARGIN, result->at.rows, result->at.columns);
+    const sonject_box highlight = box_within(&truth->highlight, &wide);
+    const sonject_box shadow = box_within(&truth->shadow, &wide);
     const float most = (float)ceiling * (float)ceiling;
     struct contact_visibility visibility = {NAN, NAN};
     float *intensity = allocate_array(wide.rows, wide.columns * sizeof *intensity);

@@ -38,10 +38,9 @@ static void mean_of_neighbours(const float *intensity, size_t rows, size_t colum
         }
 }
 
-struct window_box box_with_margin(const struct window_box *box, size_t margin, size_t rows,
-                                  size_t columns)
+sonject_box box_with_margin(const sonject_box *box, size_t margin, size_t rows, size_t columns)
 {
-    struct window_box wide;
+    sonject_box wide;
     wide.first_row = box->first_row > margin ? box->first_row - margin : 0;
     wide.first_column = box->first_column > margin ? box->first_column - margin : 0;
     wide.rows = smaller(box->first_row + box->rows + margin, rows) - wide.first_row;
@@ -50,15 +49,15 @@ struct window_box box_with_margin(const struct window_box *box, size_t margin, s
 }
 
 /* Returns the box from the first row and column to before the last ones. */
-static struct window_box box_of_limits(size_t first_row, size_t first_column, size_t last_row,
-                                       size_t last_column)
+static sonject_box box_of_limits(size_t first_row, size_t first_column, size_t last_row,
+                                 size_t last_column)
 {
-    const struct window_box box = {first_row, first_column, last_row - first_row,
-                                   last_column - first_column};
+    const sonject_box box = {first_row, first_column, last_row - first_row,
+                             last_column - first_column};
     return box;
 }
 
-struct window_box box_around(const struct window_box *a, const struct window_box *b)
+sonject_box box_around(const sonject_box *a, const sonject_box *b)
 {
     return box_of_limits(smaller(a->first_row, b->first_row),
                          smaller(a->first_column, b->first_column),
@@ -66,8 +65,15 @@ struct window_box box_around(const struct window_box *a, const struct window_box
                          larger(a->first_column + a->columns, b->first_column + b->columns));
 }
 
+sonject_box box_around_parts(const sonject_box *highlight, const sonject_box *shadow)
+{
+    return highlight->rows == 0 ? *shadow
+           : shadow->rows == 0  ? *highlight
+                                : box_around(highlight, shadow);
+}
+
 /* Returns the intersection of two boxes, which must overlap. */
-static struct window_box box_within(const struct window_box *a, const struct window_box *b)
+static sonject_box box_within(const sonject_box *a, const sonject_box *b)
 {
     return box_of_limits(larger(a->first_row, b->first_row),
                          larger(a->first_column, b->first_column),
@@ -75,7 +81,7 @@ static struct window_box box_within(const struct window_box *a, const struct win
                          smaller(a->first_column + a->columns, b->first_column + b->columns));
 }
 
-static bool boxes_overlap(const struct window_box *a, const struct window_box *b)
+static bool boxes_overlap(const sonject_box *a, const sonject_box *b)
 {
     return a->first_row < b->first_row + b->rows && b->first_row < a->first_row + a->rows &&
            a->first_column < b->first_column + b->columns &&
@@ -86,7 +92,7 @@ static bool boxes_overlap(const struct window_box *a, const struct window_box *b
 struct area_search {
     const float *means, *intensity; /* the image's */
     size_t columns;                 /* the image's */
-    struct window_box box;
+    sonject_box box;
     size_t start_columns; /* first columns of the box; an area must have a pixel in them */
     enum contact_part part;
     double threshold;
@@ -105,7 +111,7 @@ static bool is_wanted(const struct area_search *search, size_t i, uint8_t mark)
 static struct contact_area fill_area(const struct area_search *search, size_t start, uint8_t from,
                                      uint8_t to)
 {
-    const struct window_box *box = &search->box;
+    const sonject_box *box = &search->box;
     struct contact_area area;
     size_t last_row = 0;
     size_t last_column = 0;
@@ -143,7 +149,7 @@ static struct contact_area fill_area(const struct area_search *search, size_t st
 /* Marks the area of most energy as the part, or for a shadow the area of most pixels. */
 static struct contact_area mark_largest_area(const struct area_search *search)
 {
-    const struct window_box *box = &search->box;
+    const sonject_box *box = &search->box;
     struct contact_area best;
     size_t best_start = 0;
     memset(&best, 0, sizeof best);
@@ -205,12 +211,6 @@ void contact_image_clear(struct contact_image *image)
     memset(image, 0, sizeof *image);
 }
 
-struct window_box window_box_of(const sonject_box *box)
-{
-    return (struct window_box){(size_t)box->first_row, (size_t)box->first_column, (size_t)box->rows,
-                               (size_t)box->columns};
-}
-
 int compare_floats(const void *a, const void *b)
 {
     const float x = *(const float *)a;
@@ -218,7 +218,7 @@ int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static float mean_of_box(const struct contact_image *image, const struct window_box *box)
+static float mean_of_box(const struct contact_image *image, const sonject_box *box)
 {
     double sum = 0.0;
     for (size_t row = 0; row < box->rows; row++)
@@ -230,14 +230,14 @@ static float mean_of_box(const struct contact_image *image, const struct window_
 
 /* Returns the median of the blocks of `wide` that touch neither `box` nor the water column, or a
  * negative number if there are none. */
-static double level_beside(const struct contact_image *image, const struct window_box *wide,
-                           const struct window_box *box, float *blocks)
+static double level_beside(const struct contact_image *image, const sonject_box *wide,
+                           const sonject_box *box, float *blocks)
 {
     size_t count = 0;
     for (size_t row = 0; row + BLOCK <= wide->rows; row += BLOCK)
         for (size_t column = 0; column + BLOCK <= wide->columns; column += BLOCK) {
-            const struct window_box block = {wide->first_row + row, wide->first_column + column,
-                                             BLOCK, BLOCK};
+            const sonject_box block = {wide->first_row + row, wide->first_column + column, BLOCK,
+                                       BLOCK};
             if (block.first_column >= image->seabed_columns[block.first_row] &&
                 (!box || !boxes_overlap(&block, box)))
                 blocks[count++] = mean_of_box(image, &block);
@@ -247,9 +247,9 @@ static double level_beside(const struct contact_image *image, const struct windo
 }
 
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
-                                 const struct window_box *box, double *level)
+                                 const sonject_box *box, double *level)
 {
-    const struct window_box wide = box_with_margin(box, SEABED_MARGIN, image->rows, image->columns);
+    const sonject_box wide = box_with_margin(box, SEABED_MARGIN, image->rows, image->columns);
     float *blocks =
         allocate_array((wide.rows / BLOCK) * (wide.columns / BLOCK) + 1, sizeof *blocks);
     CHECK_MEMORY(report, blocks, "the seabed's level");
@@ -273,7 +273,7 @@ static struct contact_area mark_highlight(const struct contact_image *image,
 {
     struct contact_area highlight = mark_largest_area(search);
     for (int piece = 0; highlight.pixels > 0 && piece < PIECES_MAX; piece++) {
-        const struct window_box wide =
+        const sonject_box wide =
             box_with_margin(&highlight.box, PIECE_GAP, image->rows, image->columns);
         struct area_search near = *search;
         near.box = box_within(&wide, &search->box);
@@ -287,7 +287,7 @@ static struct contact_area mark_highlight(const struct contact_image *image,
     return highlight;
 }
 
-static double brightest_mean(const struct contact_image *image, const struct window_box *box)
+static double brightest_mean(const struct contact_image *image, const sonject_box *box)
 {
     float brightest = 0.0f;
     for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
@@ -297,27 +297,27 @@ static double brightest_mean(const struct contact_image *image, const struct win
     return (double)brightest;
 }
 
-static struct window_box beside(const struct contact_image *image, const struct window_box *bright,
-                                const struct window_box *box)
+static sonject_box beside(const struct contact_image *image, const sonject_box *bright,
+                          const sonject_box *box)
 {
-    const struct window_box wide =
+    const sonject_box wide =
         box_with_margin(bright, bright->rows / 2 + ROWS_BESIDE, image->rows, image->columns);
-    struct window_box beyond = box_within(&wide, box);
+    sonject_box beyond = box_within(&wide, box);
     beyond.first_column = bright->first_column;
     beyond.columns = box->first_column + box->columns - bright->first_column;
     return beyond;
 }
 
 /* Clears the marks of the last contact. */
-static void begin_marks(struct contact_image *image, const struct window_box *box)
+static void begin_marks(struct contact_image *image, const sonject_box *box)
 {
-    const struct window_box *last = &image->marked;
+    const sonject_box *last = &image->marked;
     for (size_t row = last->first_row; row < last->first_row + last->rows; row++)
         memset(image->marks + row * image->columns + last->first_column, PART_NONE, last->columns);
     image->marked = *box;
 }
 
-static void keep_marks(struct contact_image *image, const struct window_box *box)
+static void keep_marks(struct contact_image *image, const sonject_box *box)
 {
     for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
         for (size_t k = 0; k < box->columns; k++) {
@@ -402,8 +402,8 @@ static double mean_about(const struct contact_image *image, size_t row, size_t c
 }
 
 /* means: room for one number per pixel of the seabed's box. */
-static double contrast_of(const struct contact_image *image, const struct window_box *seabed,
-                          const struct window_box *part, const struct extreme *wanted, float *means)
+static double contrast_of(const struct contact_image *image, const sonject_box *seabed,
+                          const sonject_box *part, const struct extreme *wanted, float *means)
 {
     const size_t reach = wanted->column_reach;
     double found = NAN;
@@ -425,17 +425,13 @@ static double contrast_of(const struct contact_image *image, const struct window
 }
 
 sonject_status measure_visibility(const struct contact_image *image, struct report *report,
-                                  const struct window_box *highlight,
-                                  const struct window_box *shadow,
+                                  const sonject_box *highlight, const sonject_box *shadow,
                                   struct contact_visibility *visibility)
 {
     static const struct extreme brightest = {1, 0.995, true};
     static const struct extreme darkest = {3, 0.005, false};
-    const struct window_box both = highlight->rows == 0 ? *shadow
-                                   : shadow->rows == 0  ? *highlight
-                                                        : box_around(highlight, shadow);
-    const struct window_box seabed =
-        box_with_margin(&both, SEABED_MARGIN, image->rows, image->columns);
+    const sonject_box both = box_around_parts(highlight, shadow);
+    const sonject_box seabed = box_with_margin(&both, SEABED_MARGIN, image->rows, image->columns);
     float *means = allocate_array(seabed.rows, seabed.columns * sizeof *means);
     CHECK_MEMORY(report, means, "the seabed about a contact");
     visibility->highlight_db = contrast_of(image, &seabed, highlight, &brightest, means);

@@ -51,12 +51,6 @@ const struct contact_number contact_numbers[CONTACT_NUMBERS] = {
     NUMBER(highlight_visibility_db),
     NUMBER(shadow_visibility_db)};
 
-static sonject_box public_box(const struct window_box *box)
-{
-    const sonject_box whole = {box->first_row, box->first_column, box->rows, box->columns};
-    return whole;
-}
-
 static double decibels(double intensity)
 {
     return intensity > 0.0 ? 10.0 * log10(intensity) : NAN;
@@ -68,7 +62,7 @@ static void measure_axis(const float *intensity, size_t columns, const uint8_t *
                          const struct contact_sizes *sizes, double row_spacing_m,
                          double column_spacing_m, sonject_contact_measures *measures)
 {
-    const struct window_box *box = &sizes->highlight.box;
+    const sonject_box *box = &sizes->highlight.box;
     double sum = 0.0;
     double x = 0.0;
     double y = 0.0;
@@ -103,8 +97,8 @@ static void fill(const struct contact_sizes *sizes, double row_spacing_m, double
 {
     const double row = row_spacing_m > 0.0 ? row_spacing_m : NAN;
     const double column = column_spacing_m > 0.0 ? column_spacing_m : NAN;
-    measures->highlight = public_box(&sizes->highlight.box);
-    measures->shadow = public_box(&sizes->shadow.box);
+    measures->highlight = sizes->highlight.box;
+    measures->shadow = sizes->shadow.box;
     measures->highlight_along_pixels = sizes->highlight_rows.pixels;
     measures->highlight_range_pixels = sizes->highlight_columns.pixels;
     measures->shadow_along_pixels = sizes->shadow_rows.pixels;
@@ -141,9 +135,9 @@ static void forget(sonject_contact_measures *measures)
 }
 
 /* Returns whether an area touches an edge of the box around it. */
-static bool is_cut_by(const struct contact_area *area, const struct window_box *box)
+static bool is_cut_by(const struct contact_area *area, const sonject_box *box)
 {
-    const struct window_box *inner = &area->box;
+    const sonject_box *inner = &area->box;
     return area->pixels > 0 &&
            (inner->first_row == box->first_row || inner->first_column == box->first_column ||
             inner->first_row + inner->rows == box->first_row + box->rows ||
@@ -174,8 +168,7 @@ static sonject_status place_in_box(struct report *report, const sonject_box *box
             (unsigned long long)box->first_row, (unsigned long long)box->first_column,
             (unsigned long long)box->rows, (unsigned long long)box->columns, rows, columns);
     memset(place, 0, sizeof *place);
-    place->box = window_box_of(box);
-    place->bright = place->box;
+    place->box = place->bright = *box;
     return SONJECT_OK;
 }
 
@@ -188,7 +181,7 @@ static sonject_status contact_measure(struct report *report, struct contact_imag
     forget(measures);
     CHECK(measure_contact_sizes(image, report, place, &sizes));
     fill(&sizes, row_spacing_m, column_spacing_m, measures);
-    measures->box = public_box(&place->box);
+    measures->box = place->box;
     measures->is_cut =
         is_cut_by(&sizes.highlight, &place->box) || is_cut_by(&sizes.shadow, &place->box);
     if (sizes.highlight.pixels > 0 && row_spacing_m > 0.0 && column_spacing_m > 0.0)
@@ -204,9 +197,8 @@ static sonject_status contacts_add_visibility(struct report *report,
 {
     for (size_t i = 0; i < count; i++) {
         struct contact_visibility visibility;
-        const struct window_box highlight = window_box_of(&measures[i].highlight);
-        const struct window_box shadow = window_box_of(&measures[i].shadow);
-        CHECK(measure_visibility(image, report, &highlight, &shadow, &visibility));
+        CHECK(measure_visibility(image, report, &measures[i].highlight, &measures[i].shadow,
+                                 &visibility));
         measures[i].highlight_visibility_db = visibility.highlight_db;
         measures[i].shadow_visibility_db = visibility.shadow_db;
     }

@@ -51,7 +51,7 @@ struct contact_lines {
 
 /* Rows or columns of a box, one after the other from `start`, backwards where step is -1. */
 struct profile_path {
-    struct window_box box;
+    sonject_box box;
     bool is_along_track; /* row after row */
     size_t start;
     int step;
@@ -92,8 +92,8 @@ static double lobe_bias_at(const struct contact_image *image, size_t row, size_t
 
 typedef double pixel_value(const struct contact_image *image, size_t row, size_t column);
 
-static double mean_of(const struct contact_lines *lines, const struct window_box *box,
-                      pixel_value *value, double otherwise)
+static double mean_of(const struct contact_lines *lines, const sonject_box *box, pixel_value *value,
+                      double otherwise)
 {
     const struct contact_image *image = lines->image;
     double sum = 0.0;
@@ -111,7 +111,7 @@ static double mean_of(const struct contact_lines *lines, const struct window_box
 }
 
 /* Returns the mean over the box's pixels inside the image, or the seabed's if there are none. */
-static double mean_along_lines(const struct contact_lines *lines, const struct window_box *box)
+static double mean_along_lines(const struct contact_lines *lines, const sonject_box *box)
 {
     return mean_of(lines, box, intensity_at, lines->seabed);
 }
@@ -135,12 +135,12 @@ static double deviation_of(const struct speckle_axis *axis)
 }
 
 /* Returns the box's row or column number k of the path. */
-static struct window_box line_of(const struct profile_path *path, size_t k)
+static sonject_box line_of(const struct profile_path *path, size_t k)
 {
     const size_t index = path->step > 0 ? path->start + k : path->start - k;
-    const struct window_box *box = &path->box;
-    const struct window_box row = {index, box->first_column, 1, box->columns};
-    const struct window_box column = {box->first_row, index, box->rows, 1};
+    const sonject_box *box = &path->box;
+    const sonject_box row = {index, box->first_column, 1, box->columns};
+    const sonject_box column = {box->first_row, index, box->rows, 1};
     return path->is_along_track ? row : column;
 }
 
@@ -163,7 +163,7 @@ static struct profile profile_along(const struct contact_lines *lines,
                       pixels_a_sample(along->length_pixels);
     profile.deviation = deviation_of(along);
     for (size_t k = 0; k < profile.count; k++) {
-        const struct window_box line = line_of(path, k);
+        const sonject_box line = line_of(path, k);
         lines->means[k] = mean_along_lines(lines, &line);
         lines->lobe_bias[k] = 0.0;
     }
@@ -177,7 +177,7 @@ static struct profile profile_with_lobe_bias(const struct contact_lines *lines,
 {
     const struct profile profile = profile_along(lines, path);
     for (size_t k = 0; k < profile.count; k++) {
-        const struct window_box line = line_of(path, k);
+        const sonject_box line = line_of(path, k);
         lines->lobe_bias[k] = mean_of(lines, &line, lobe_bias_at, 0.0);
     }
     return profile;
@@ -197,9 +197,9 @@ static struct contact_length length_between(const struct profile_edge *a,
 }
 
 /* Returns the middle third of a part's rows, at least one. */
-static struct window_box middle_rows(const struct window_box *part)
+static sonject_box middle_rows(const sonject_box *part)
 {
-    struct window_box middle = *part;
+    sonject_box middle = *part;
     middle.rows = (part->rows + 2) / 3;
     middle.first_row = part->first_row + (part->rows - middle.rows) / 2;
     return middle;
@@ -215,7 +215,7 @@ static struct end_levels levels_of_highlight(const struct contact_lines *lines)
 /* Lays lines along the straight line through the marked pixels of the rows. *part gets the columns
  * of these lines at the middle row, as many as an average row has. */
 static void lie_along(struct contact_lines *lines, const struct contact_area *area,
-                      struct window_box *part)
+                      sonject_box *part)
 {
     const struct contact_image *image = lines->image;
     const double count = (double)area->pixels;
@@ -242,9 +242,8 @@ static void lie_along(struct contact_lines *lines, const struct contact_area *ar
 }
 
 /* Returns the columns, counted along the lines, of a highlight's marks in some of its rows. */
-static struct window_box columns_marked(const struct contact_lines *lines,
-                                        const struct window_box *highlight, size_t first_row,
-                                        size_t rows)
+static sonject_box columns_marked(const struct contact_lines *lines, const sonject_box *highlight,
+                                  size_t first_row, size_t rows)
 {
     const struct contact_image *image = lines->image;
     long low = LONG_MAX;
@@ -258,21 +257,21 @@ static struct window_box columns_marked(const struct contact_lines *lines,
             low = place < low ? place : low;
             high = place > high ? place : high;
         }
-    const struct window_box columns = {first_row, (size_t)(low < high ? low : high), rows,
-                                       low < high ? (size_t)(high - low + 1) : 1};
+    const sonject_box columns = {first_row, (size_t)(low < high ? low : high), rows,
+                                 low < high ? (size_t)(high - low + 1) : 1};
     return columns;
 }
 
 /* Returns the row at which a highlight ends: among its last rows if step is 1, its first if -1. */
 static struct profile_edge end_along_track(const struct contact_lines *lines,
-                                           const struct window_box *highlight, int step)
+                                           const sonject_box *highlight, int step)
 {
     const struct end_levels levels = levels_of_highlight(lines);
     const size_t rows = smaller(END_ROWS, highlight->rows);
     const size_t inner = smaller(EDGE_REACH, (highlight->rows - 1) / 2);
     const size_t last =
         step > 0 ? highlight->first_row + highlight->rows - 1 : highlight->first_row;
-    const struct window_box box =
+    const sonject_box box =
         columns_marked(lines, highlight, step > 0 ? last + 1 - rows : last, rows);
     const struct profile_path path = {box, true, step > 0 ? last - inner : last + inner, step,
                                       inner + 1 + EDGE_REACH};
@@ -284,7 +283,7 @@ static struct profile_edge end_along_track(const struct contact_lines *lines,
 
 /* Returns the width of a highlight in range, across some rows. */
 static struct contact_length width_of_highlight(const struct contact_lines *lines,
-                                                const struct window_box *rows)
+                                                const sonject_box *rows)
 {
     const struct end_levels levels = levels_of_highlight(lines);
     struct profile_path path = {*rows, false, rows->first_column + rows->columns / 2, 1,
@@ -300,9 +299,9 @@ static struct contact_length width_of_highlight(const struct contact_lines *line
 /* Leaves the lines along the highlight. Returns the highlight's middle column at the middle row. */
 static size_t measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes)
 {
-    struct window_box along;
+    sonject_box along;
     lie_along(lines, &sizes->highlight, &along);
-    const struct window_box middle = middle_rows(&along);
+    const sonject_box middle = middle_rows(&along);
     const struct profile_edge first = end_along_track(lines, &sizes->highlight.box, -1);
     const struct profile_edge last = end_along_track(lines, &sizes->highlight.box, 1);
     sizes->highlight_rows.pixels = fmax(0.0, last.place - first.place);
@@ -313,12 +312,12 @@ static size_t measure_highlight(struct contact_lines *lines, struct contact_size
 }
 
 /* Returns the darkest third of a shadow's columns, at least three. *level gets the mean. */
-static struct window_box darkest_columns(const struct contact_lines *lines,
-                                         const struct window_box *middle, double *level)
+static sonject_box darkest_columns(const struct contact_lines *lines, const sonject_box *middle,
+                                   double *level)
 {
-    struct window_box darkest = *middle;
+    sonject_box darkest = *middle;
     darkest.columns = smaller(middle->columns, middle->columns > 9 ? middle->columns / 3 : 3);
-    struct window_box tried = darkest;
+    sonject_box tried = darkest;
     *level = INFINITY;
     for (; tried.first_column + tried.columns <= middle->first_column + middle->columns;
          tried.first_column++) {
@@ -359,7 +358,7 @@ static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
 
 /* A shadow as it is measured in range. */
 struct shadow_view {
-    struct window_box part;
+    sonject_box part;
     size_t highlight; /* a column of the highlight; core if there is none */
     size_t core;      /* a column in the dark part */
     double dark;      /* level of the dark part */
@@ -372,7 +371,7 @@ struct shadow_edges {
 
 static struct edge_posterior weigh_far_edge(const struct contact_lines *lines,
                                             const struct shadow_view *shadow,
-                                            const struct window_box *rows)
+                                            const sonject_box *rows)
 {
     struct profile_path path = {*rows, false, shadow->core, 1, 0};
     path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
@@ -381,7 +380,7 @@ static struct edge_posterior weigh_far_edge(const struct contact_lines *lines,
 
 static struct shadow_edges find_near_edges(const struct contact_lines *lines,
                                            const struct shadow_view *shadow,
-                                           const struct window_box *rows)
+                                           const sonject_box *rows)
 {
     struct shadow_edges edges;
     struct profile_path path = {*rows, false, shadow->core, 1, 0};
@@ -408,8 +407,7 @@ static struct shadow_edges find_near_edges(const struct contact_lines *lines,
 
 /* Measures how far a first part of the shadow is brighter than the rest, between the mean edges. */
 static void measure_dim_part(const struct contact_lines *lines, const struct shadow_view *shadow,
-                             const struct window_box *middle, double near,
-                             struct contact_sizes *sizes)
+                             const sonject_box *middle, double near, struct contact_sizes *sizes)
 {
     const double first = (double)shadow->core + near + EDGE_MARGIN;
     const double columns = sizes->shadow_columns.pixels - 2.0 * EDGE_MARGIN;
@@ -432,7 +430,7 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
 
 /* Measures a shadow in range, as the mean over bands of rows, whose speckle is independent. */
 static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
-                             const struct window_box *middle, struct contact_sizes *sizes)
+                             const sonject_box *middle, struct contact_sizes *sizes)
 {
     const size_t bands = smaller(BANDS, middle->rows);
     struct edge_posterior far_edges[BANDS];
@@ -441,7 +439,7 @@ static void measure_in_range(const struct contact_lines *lines, const struct sha
     double near_variance = 0.0;
     double gap_variance = 0.0;
     for (size_t band = 0; band < bands; band++) {
-        struct window_box rows = *middle;
+        sonject_box rows = *middle;
         rows.first_row += band * middle->rows / bands;
         rows.rows = (band + 1) * middle->rows / bands - band * middle->rows / bands;
         const struct shadow_edges edges = find_near_edges(lines, shadow, &rows);
@@ -465,10 +463,10 @@ static void measure_in_range(const struct contact_lines *lines, const struct sha
 static void measure_shadow(const struct contact_lines *lines, const size_t *highlight,
                            struct contact_sizes *sizes)
 {
-    const struct window_box *part = &sizes->shadow.box;
-    const struct window_box middle = middle_rows(part);
+    const sonject_box *part = &sizes->shadow.box;
+    const sonject_box middle = middle_rows(part);
     double level;
-    const struct window_box darkest = darkest_columns(lines, &middle, &level);
+    const sonject_box darkest = darkest_columns(lines, &middle, &level);
     struct shadow_view view = {*part, 0, darkest.first_column + darkest.columns / 2, 0.0};
     view.highlight = highlight ? *highlight : view.core;
     view.dark =

@@ -26,26 +26,19 @@ enum contact_part {
     PART_SHADOW
 };
 
-/* A rectangle of an image of intensities. */
-struct window_box {
-    size_t first_row, first_column, rows, columns;
-};
-
-struct window_box window_box_of(const sonject_box *box);
-
 /* Compares floats for qsort, in ascending order. */
 int compare_floats(const void *a, const void *b);
 
 /* Returns a box widened by a margin of pixels on each side, within the image. */
-struct window_box box_with_margin(const struct window_box *box, size_t margin, size_t rows,
-                                  size_t columns);
+sonject_box box_with_margin(const sonject_box *box, size_t margin, size_t rows, size_t columns);
 
-/* Returns the smallest box around both. */
-struct window_box box_around(const struct window_box *a, const struct window_box *b);
+/* Return the smallest box around both. Of a contact's parts, either may be empty. */
+sonject_box box_around(const sonject_box *a, const sonject_box *b);
+sonject_box box_around_parts(const sonject_box *highlight, const sonject_box *shadow);
 
 /* A set of pixels that are connected by their sides. */
 struct contact_area {
-    struct window_box box; /* around all pixels; rows 0: there is no area */
+    sonject_box box; /* around all pixels; rows 0: there is no area */
     size_t pixels;
     double energy; /* sum of intensities */
 };
@@ -58,7 +51,7 @@ struct contact_image {
     size_t *seabed_columns;
     float *means;                      /* over 3 x 3 pixels; owned */
     uint8_t *marks;                    /* enum contact_part of the contact measured last; owned */
-    struct window_box marked;          /* box outside of which marks are 0 */
+    sonject_box marked;                /* box outside of which marks are 0 */
     uint8_t *taken;                    /* not 0 in all contacts measured so far; owned */
     struct speckle_statistics speckle; /* statistics of all pixels */
 };
@@ -72,12 +65,12 @@ void contact_image_clear(struct contact_image *image);
 /* Finds the mean intensity around a box, or within it if there is nothing around it. The median of
  * blocks leaves out stones and shadows. Errors: MEMORY. */
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
-                                 const struct window_box *box, double *level);
+                                 const sonject_box *box, double *level);
 
 /* The place at which a contact is looked for. */
 struct contact_place {
-    struct window_box box;    /* holds all of the contact */
-    struct window_box bright; /* part of the box that holds the highlight */
+    sonject_box box;    /* holds all of the contact */
+    sonject_box bright; /* part of the box that holds the highlight */
     bool is_near; /* the shadow begins just behind the highlight; farther dark areas are others' */
 };
 
@@ -122,8 +115,7 @@ struct contact_visibility {
 /* Measures how well the parts in these boxes (rows 0: no such part) stand out of the seabed. Pixels
  * within SEABED_MARGIN of the boxes that are not taken are seabed. Errors: MEMORY. */
 sonject_status measure_visibility(const struct contact_image *image, struct report *report,
-                                  const struct window_box *highlight,
-                                  const struct window_box *shadow,
+                                  const sonject_box *highlight, const sonject_box *shadow,
                                   struct contact_visibility *visibility);
 
 #endif

@@ -151,7 +151,7 @@ static float intensity[ROWS * COLUMNS];
 TEST(test_dark_speckle_is_no_shadow)
 {
     struct contact_image image;
-    const struct window_box box = {50, 80, 40, 120};
+    const sonject_box box = {50, 80, 40, 120};
     const struct contact_place place = {box, box, false};
     struct contact_sizes sizes;
     for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
@@ -207,14 +207,14 @@ TEST(test_small_images)
             }
 }
 
-static void fill_box(const struct window_box *box, float value)
+static void fill_box(const sonject_box *box, float value)
 {
     for (size_t row = 0; row < box->rows; row++)
         for (size_t column = 0; column < box->columns; column++)
             intensity[(box->first_row + row) * COLUMNS + box->first_column + column] = value;
 }
 
-static void take_box(struct contact_image *image, const struct window_box *box)
+static void take_box(struct contact_image *image, const sonject_box *box)
 {
     for (size_t row = 0; row < box->rows; row++)
         memset(image->taken + (box->first_row + row) * COLUMNS + box->first_column, 1,
@@ -230,8 +230,8 @@ TEST(parts_are_seen_by_the_quantiles_of_speckle)
     enum {
         SEEN = 40
     };
-    const struct window_box bright = {90, 100, 6, 6}, dark = {90, 110, 7, 21}, none = {0, 0, 0, 0};
-    const struct window_box other = {70, 100, 8, 20};
+    const sonject_box bright = {90, 100, 6, 6}, dark = {90, 110, 7, 21}, none = {0, 0, 0, 0};
+    const sonject_box other = {70, 100, 8, 20};
     struct contact_image image;
     struct contact_visibility seen, mean = {0.0, 0.0};
     random_state = 7;
