@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "dataset/contact_files.h"
+#include "measure/contacts.h"
 
 #define PAIRING_ROUNDS 8 /* no labelling has a chain of boxes that needs more */
 
@@ -89,17 +90,7 @@ static void pair_parts(struct labelled_contact *contacts, size_t count)
                 shadow->part == LABELLED_SHADOW ? find_nearest(contacts, count, i) : count;
             if (other == count || find_nearest(contacts, count, other) != i)
                 continue;
-            sonject_box *box = &contacts[other].box;
-            const sonject_box from = *box;
-            const sonject_box *add = &shadow->box;
-            box->first_row = from.first_row < add->first_row ? from.first_row : add->first_row;
-            box->first_column =
-                from.first_column < add->first_column ? from.first_column : add->first_column;
-            const uint64_t row_ends[] = {from.first_row + from.rows, add->first_row + add->rows};
-            const uint64_t ends[] = {from.first_column + from.columns,
-                                     add->first_column + add->columns};
-            box->rows = row_ends[row_ends[1] > row_ends[0]] - box->first_row;
-            box->columns = ends[ends[1] > ends[0]] - box->first_column;
+            contacts[other].box = box_around(&contacts[other].box, &shadow->box);
             contacts[other].part = shadow->part = LABELLED_BOTH;
             shadow->box.rows = 0;
             goes_on = true;
