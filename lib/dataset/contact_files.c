@@ -27,13 +27,6 @@ static bool begins(const char *text, const char *word)
     return *word == 0;
 }
 
-static bool has_word(const char *text, const char *word)
-{
-    while (*text && !begins(text, word))
-        text++;
-    return *text != 0;
-}
-
 bool name_ends(const char *name, const char *ending)
 {
     const size_t length = strlen(name);
@@ -42,8 +35,9 @@ bool name_ends(const char *name, const char *ending)
 
 uint32_t part_of_class(const char *name, uint32_t part)
 {
-    const bool has_shadow = has_word(name, "shadow");
-    const bool has_highlight = has_word(name, "highlight") || has_word(name, "echo");
+    const bool has_shadow = contains_ignoring_case(name, "shadow");
+    const bool has_highlight =
+        contains_ignoring_case(name, "highlight") || contains_ignoring_case(name, "echo");
     return has_shadow && has_highlight ? LABELLED_BOTH
            : has_shadow                ? LABELLED_SHADOW
            : has_highlight             ? LABELLED_HIGHLIGHT
