@@ -86,10 +86,9 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
 
 char *input_override(const char *image)
 {
-    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = (char *)image};
     struct growing_text input = {NULL, 0, 0, false};
     growing_text_add(&input, "input.path=");
-    tree_write_flow(&path, &input);
+    tree_write_text(image, &input);
     return growing_text_end(&input);
 }
 

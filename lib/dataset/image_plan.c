@@ -376,8 +376,6 @@ static void write_object(struct drawing *drawing, const struct item *item,
                          struct growing_text *text)
 {
     const struct region *chip = &drawing->plan->chip;
-    const struct tree_node class_name = {
-        .kind = TREE_TEXT, .is_quoted = true, .text = (char *)item->class_name};
     const uint32_t number = drawing->objects;
     char row[32], column[32];
     begin_object(drawing, number);
@@ -386,7 +384,7 @@ static void write_object(struct drawing *drawing, const struct item *item,
     text_of_number(row, sizeof row, (double)chip->first_row + places->rows[number], 9);
     text_of_number(column, sizeof column, (double)chip->first_column + places->columns[number], 9);
     growing_text_add(text, "%s{\"class\": ", number > 0 ? ", " : "");
-    tree_write_flow(&class_name, text);
+    tree_write_text(item->class_name, text);
     growing_text_add(text, ", \"position\": {\"row\": %s, \"column\": %s}%s%s", row, column,
                      item->object[1] == '}' ? "" : ", ", item->object + 1);
 }

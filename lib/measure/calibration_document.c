@@ -267,27 +267,11 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
 
 /* ---- YAML. */
 
-/* Adds a text in JSON's quotes, which YAML takes, too, or without quotes where none are needed. */
-static void add_text(struct growing_text *text, const char *value)
-{
-    const size_t plain = strspn(value, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                       "0123456789_./+- ");
-    if (value[plain] == '\0' && *value && *value != ' ' && (*value != '-' || value[1] > ' ') &&
-        value[strlen(value) - 1] != ' ') {
-        growing_text_add(text, "%s", value);
-        return;
-    }
-    growing_text_add(text, "\"");
-    for (; *value; value++)
-        growing_text_add(text, *value == '"' || *value == '\\' ? "\\%c" : "%c", *value);
-    growing_text_add(text, "\"");
-}
-
 static void add_value(struct growing_text *text, const json_t *value)
 {
     char number[DIGITS + 24];
     if (json_is_string(value))
-        add_text(text, json_string_value(value));
+        tree_write_text(json_string_value(value), text);
     else if (json_is_integer(value))
         growing_text_add(text, "%lld", (long long)json_integer_value(value));
     else if (json_is_real(value))

@@ -190,16 +190,22 @@ static void write_quoted(const char *text, struct growing_text *out)
     growing_text_add(out, "\"");
 }
 
+void tree_write_text(const char *text, struct growing_text *out)
+{
+    const struct tree_node unquoted = {.kind = TREE_TEXT, .text = (char *)text};
+    if (is_plain(text) && !tree_is_null(&unquoted))
+        growing_text_add(out, "%s", text);
+    else
+        write_quoted(text, out);
+}
+
 void tree_write_flow(const struct tree_node *node, struct growing_text *text)
 {
     if (node->kind == TREE_TEXT) {
-        const struct tree_node unquoted = {.kind = TREE_TEXT, .text = node->text};
         if (tree_is_null(node))
             growing_text_add(text, "null");
-        else if (is_plain(node->text) && !tree_is_null(&unquoted))
-            growing_text_add(text, "%s", node->text);
         else
-            write_quoted(node->text, text);
+            tree_write_text(node->text, text);
         return;
     }
     growing_text_add(text, node->kind == TREE_LIST ? "[" : "{");

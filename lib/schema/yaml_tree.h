@@ -113,6 +113,10 @@ void key_path_shorten(struct key_path *path, size_t length);
 /* Adds the node in YAML's flow style, on one line. Reading that line gives the same tree. */
 void tree_write_flow(const struct tree_node *node, struct growing_text *text);
 
+/* Adds a text as a value in that style, in quotes where it would be read as another kind of value.
+ */
+void tree_write_text(const char *text, struct growing_text *out);
+
 /* Writes the node as the value of an override. *text is for free(). Errors: MEMORY. */
 sonject_status tree_override_text(struct report *report, const struct tree_node *node, char **text);
 
