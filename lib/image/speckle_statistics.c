@@ -192,18 +192,13 @@ static void summarise(const double *blocks, size_t count, double *scratch,
     fill_axis(range, range_error, &statistics->range);
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 sonject_status measure_speckle(struct report *report, const float *intensity,
                                const uint8_t *excluded, size_t rows, size_t columns, size_t stride,
                                struct speckle_statistics *statistics)
 {
     memset(statistics, 0, sizeof *statistics);
-    const size_t high = smaller(SPECKLE_BLOCK, rows);
-    const size_t wide = smaller(SPECKLE_BLOCK, columns);
+    const size_t high = smaller_size(SPECKLE_BLOCK, rows);
+    const size_t wide = smaller_size(SPECKLE_BLOCK, columns);
     if (high < BLOCK_LEAST || wide < BLOCK_LEAST)
         return SONJECT_OK;
     const size_t most = (rows / high) * (columns / wide);

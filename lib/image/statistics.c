@@ -48,11 +48,6 @@ size_t local_mean_reach(double deviation)
     return (size_t)fmin(PASSES * (radius_of_pass(deviation) + 1.0), 1e9);
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 static sonject_status line_mean_init(struct line_mean *mean, struct report *report, size_t length,
                                      double deviation)
 {
@@ -74,7 +69,8 @@ static sonject_status line_mean_init(struct line_mean *mean, struct report *repo
     CHECK_MEMORY(report, mean->weight && mean->line && mean->before && mean->after, "a local mean");
     for (size_t i = 0; i < length; i++) {
         const size_t left = i, right = length - 1 - i;
-        mean->weight[i] = (double)(smaller(left, mean->radius) + 1 + smaller(right, mean->radius));
+        mean->weight[i] =
+            (double)(smaller_size(left, mean->radius) + 1 + smaller_size(right, mean->radius));
         mean->weight[i] += left > mean->radius ? mean->edge_weight : 0.0;
         mean->weight[i] += right > mean->radius ? mean->edge_weight : 0.0;
     }
@@ -130,7 +126,7 @@ static sonject_status smooth_lines(struct report *report, const float *from, flo
     struct line_mean mean;
     const sonject_status status = line_mean_init(&mean, report, length, deviation);
     for (size_t first = 0; status == SONJECT_OK && first < lines; first += LINES_AT_ONCE) {
-        const size_t count = smaller(LINES_AT_ONCE, lines - first);
+        const size_t count = smaller_size(LINES_AT_ONCE, lines - first);
         line_values *line = mean.line + mean.radius + 1;
         for (size_t i = 0; i < length; i++)
             for (size_t k = 0; k < count; k++)

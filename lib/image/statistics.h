@@ -8,6 +8,11 @@
 
 #include "base/report.h"
 
+static inline size_t smaller_size(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
 /* Finds a smooth local mean of a rows x columns map by three successive running means. They are
  * close to a Gaussian and have exactly its standard deviation (in pixels, per axis; 0 leaves the
  * axis as it is). Near edges the mean is over the pixels inside. The time does not depend on the

@@ -10,11 +10,6 @@
 
 #define PART_SEEN 128 /* mark of an area that is not the largest */
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 static size_t larger(size_t a, size_t b)
 {
     return a > b ? a : b;
@@ -43,8 +38,9 @@ sonject_box box_with_margin(const sonject_box *box, size_t margin, size_t rows, 
     sonject_box wide;
     wide.first_row = box->first_row > margin ? box->first_row - margin : 0;
     wide.first_column = box->first_column > margin ? box->first_column - margin : 0;
-    wide.rows = smaller(box->first_row + box->rows + margin, rows) - wide.first_row;
-    wide.columns = smaller(box->first_column + box->columns + margin, columns) - wide.first_column;
+    wide.rows = smaller_size(box->first_row + box->rows + margin, rows) - wide.first_row;
+    wide.columns =
+        smaller_size(box->first_column + box->columns + margin, columns) - wide.first_column;
     return wide;
 }
 
@@ -59,8 +55,8 @@ static sonject_box box_of_limits(size_t first_row, size_t first_column, size_t l
 
 sonject_box box_around(const sonject_box *a, const sonject_box *b)
 {
-    return box_of_limits(smaller(a->first_row, b->first_row),
-                         smaller(a->first_column, b->first_column),
+    return box_of_limits(smaller_size(a->first_row, b->first_row),
+                         smaller_size(a->first_column, b->first_column),
                          larger(a->first_row + a->rows, b->first_row + b->rows),
                          larger(a->first_column + a->columns, b->first_column + b->columns));
 }
@@ -77,8 +73,8 @@ static sonject_box box_within(const sonject_box *a, const sonject_box *b)
 {
     return box_of_limits(larger(a->first_row, b->first_row),
                          larger(a->first_column, b->first_column),
-                         smaller(a->first_row + a->rows, b->first_row + b->rows),
-                         smaller(a->first_column + a->columns, b->first_column + b->columns));
+                         smaller_size(a->first_row + a->rows, b->first_row + b->rows),
+                         smaller_size(a->first_column + a->columns, b->first_column + b->columns));
 }
 
 static bool boxes_overlap(const sonject_box *a, const sonject_box *b)
@@ -154,7 +150,7 @@ static struct contact_area mark_largest_area(const struct area_search *search)
     size_t best_start = 0;
     memset(&best, 0, sizeof best);
     for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
-        for (size_t k = 0; k < smaller(search->start_columns, box->columns); k++) {
+        for (size_t k = 0; k < smaller_size(search->start_columns, box->columns); k++) {
             const size_t i = row * search->columns + box->first_column + k;
             if (!is_wanted(search, i, PART_NONE))
                 continue;

@@ -183,11 +183,6 @@ static struct profile profile_with_lobe_bias(const struct contact_lines *lines,
     return profile;
 }
 
-static size_t smaller(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 static struct contact_length length_between(const struct profile_edge *a,
                                             const struct profile_edge *b)
 {
@@ -267,8 +262,8 @@ static struct profile_edge end_along_track(const struct contact_lines *lines,
                                            const sonject_box *highlight, int step)
 {
     const struct end_levels levels = levels_of_highlight(lines);
-    const size_t rows = smaller(END_ROWS, highlight->rows);
-    const size_t inner = smaller(EDGE_REACH, (highlight->rows - 1) / 2);
+    const size_t rows = smaller_size(END_ROWS, highlight->rows);
+    const size_t inner = smaller_size(EDGE_REACH, (highlight->rows - 1) / 2);
     const size_t last =
         step > 0 ? highlight->first_row + highlight->rows - 1 : highlight->first_row;
     const sonject_box box =
@@ -316,7 +311,7 @@ static sonject_box darkest_columns(const struct contact_lines *lines, const sonj
                                    double *level)
 {
     sonject_box darkest = *middle;
-    darkest.columns = smaller(middle->columns, middle->columns > 9 ? middle->columns / 3 : 3);
+    darkest.columns = smaller_size(middle->columns, middle->columns > 9 ? middle->columns / 3 : 3);
     sonject_box tried = darkest;
     *level = INFINITY;
     for (; tried.first_column + tried.columns <= middle->first_column + middle->columns;
@@ -432,7 +427,7 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
 static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
                              const sonject_box *middle, struct contact_sizes *sizes)
 {
-    const size_t bands = smaller(BANDS, middle->rows);
+    const size_t bands = smaller_size(BANDS, middle->rows);
     struct edge_posterior far_edges[BANDS];
     double gap = 0.0;
     double near = 0.0;
