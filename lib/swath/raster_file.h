@@ -50,8 +50,8 @@ sonject_status raster_file_write_jpeg(struct report *report, const char *path,
                                       const struct raster_attribute *attributes,
                                       size_t attribute_count, const void *pixels, int quality);
 
-/* Writes a drawn picture if the drawing's status is OK, and frees its pixels. Returns status, or the
- * failure to write, as raster_file_write. */
+/* Writes a drawn picture if the drawing's status is OK, and frees its pixels. Returns status, or
+ * the failure to write, as raster_file_write. */
 sonject_status picture_write(struct report *report, sonject_status status, struct canvas *picture,
                              const char *path);
 
