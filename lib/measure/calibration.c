@@ -444,7 +444,7 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
 }
 
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
-                               const struct calibration_geometry *geometry,
+                               const sonject_geometry_params *geometry,
                                struct calibration *calibration)
 {
     struct calibration *found = calibration;

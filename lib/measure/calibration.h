@@ -139,14 +139,11 @@ struct calibration {
     size_t gain_bands;
 };
 
-/* The geometry that is known beside the swath. An unknown number is NAN or 0. */
-struct calibration_geometry {
-    double row_spacing_m, column_spacing_m, first_slant_range_m;
-};
-
-/* Makes all estimates. On failure there is nothing to clear. Errors: MEMORY. */
+/* Makes all estimates. geometry: what is known beside the swath; only the spacings and the first
+ * range count, and an unknown one is NAN or 0. On failure there is nothing to clear. Errors:
+ * MEMORY. */
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
-                               const struct calibration_geometry *geometry,
+                               const sonject_geometry_params *geometry,
                                struct calibration *calibration);
 void calibration_clear(struct calibration *calibration);
 

@@ -71,20 +71,17 @@ static sonject_status read_swath(struct report *report, const char *path, struct
     return status;
 }
 
-/* noted: the geometry that the file notes; NULL: no file. */
-static void find_geometry(const struct noted_geometry *noted, const struct image_options *options,
-                          struct calibration_geometry *geometry)
+/* Returns the caller's geometry or, where there is none, what the file notes. */
+static sonject_geometry_params known_geometry(const struct noted_geometry *noted,
+                                              const struct image_options *options)
 {
-    sonject_geometry_params known = options->geometry;
-    if (noted && !options->has_geometry) {
-        geometry->column_spacing_m = noted->axis == RANGE_GROUND ? NAN : noted->column_spacing_m;
-        geometry->row_spacing_m = noted->row_spacing_m;
-        geometry->first_slant_range_m = noted->axis == RANGE_GROUND ? NAN : noted->first_range_m;
-    } else if (options->has_geometry) {
-        geometry->column_spacing_m = known.column_spacing_m;
-        geometry->row_spacing_m = known.row_spacing_m;
-        geometry->first_slant_range_m = known.first_slant_range_m;
-    }
+    const bool is_ground = noted->axis == RANGE_GROUND;
+    return options->has_geometry
+               ? options->geometry
+               : (sonject_geometry_params){
+                     .row_spacing_m = noted->row_spacing_m,
+                     .column_spacing_m = is_ground ? NAN : noted->column_spacing_m,
+                     .first_slant_range_m = is_ground ? NAN : noted->first_range_m};
 }
 
 /* Compares the altitude that the pings record with where their seabed begins. */
@@ -185,10 +182,10 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
                                bool for_scene, char **text)
 {
     struct stored_swath swath = {NULL, 0, 0, 0.0, 0.0, false};
-    struct calibration_geometry geometry = {NAN, NAN, NAN};
     struct calibration found;
     struct swath_file *file = NULL;
-    struct noted_geometry noted = {.altitude_m = 0.0};
+    struct noted_geometry noted = {
+        .row_spacing_m = NAN, .column_spacing_m = NAN, .first_range_m = NAN};
     float *values = NULL;
     sonject_status status = SONJECT_OK;
     *text = NULL;
@@ -203,8 +200,7 @@ sonject_status calibrate_image(struct report *report, const sonject_calibrate_pa
     }
     if (status == SONJECT_OK && file)
         geometry_notes_read(file, &noted);
-    if (status == SONJECT_OK)
-        find_geometry(file ? &noted : NULL, options, &geometry);
+    const sonject_geometry_params geometry = known_geometry(&noted, options);
     THEN(status, calibrate_swath(report, &swath, &geometry, &found));
     if (status == SONJECT_OK) {
         tell_curve(report, params->image, &swath, &found);
