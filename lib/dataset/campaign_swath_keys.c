@@ -147,9 +147,7 @@ sonject_status campaign_read_swaths(struct reader *reader, const struct tree_nod
 
 bool is_split_name(const char *name)
 {
-    static const char signs[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    return *name && *name != '-' && strspn(name, signs) == strlen(name) &&
-           strlen(name) < SPLIT_NAME_CAPACITY;
+    return is_band_name(name) && *name != '-' && strlen(name) < SPLIT_NAME_CAPACITY;
 }
 
 sonject_status campaign_read_splits(struct reader *reader, const struct tree_node *node,
