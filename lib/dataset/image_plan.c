@@ -43,15 +43,13 @@ static void drawing_init(struct drawing *drawing, struct report *report,
                          const struct campaign *campaign, uint32_t trial,
                          const struct attempts *attempts, struct image_plan *plan)
 {
-    memset(plan, 0, sizeof *plan);
-    memset(drawing, 0, sizeof *drawing);
-    drawing->report = report;
-    drawing->campaign = campaign;
-    drawing->plan = plan;
-    drawing->trial = trial;
-    drawing->attempts = *attempts;
-    drawing->attempt = attempts->of_all;
-    plan->places = attempts->places;
+    *plan = (struct image_plan){.places = attempts->places};
+    *drawing = (struct drawing){.report = report,
+                                .campaign = campaign,
+                                .plan = plan,
+                                .trial = trial,
+                                .attempts = *attempts,
+                                .attempt = attempts->of_all};
 }
 
 void attempts_next(struct attempts *attempts)

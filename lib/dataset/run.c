@@ -325,15 +325,14 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     const bool is_here = here && strcmp(here, kept->folder) == 0;
     char *path = is_here ? copy_text(kept->path) : path_join(kept->folder, kept->path);
     const char **overrides = join_overrides(kept, params);
-    struct scene_source source;
-    memset(&source, 0, sizeof source);
-    source.path = path;
-    source.text = kept->text;
-    source.overrides = overrides;
-    source.override_count = kept->override_count + params->override_count;
-    source.moved_folder = is_here ? NULL : kept->folder;
-    source.moved_overrides = kept->override_count;
-    source.made_calibration = calibration;
+    const struct scene_source source = {.path = path,
+                                        .text = kept->text,
+                                        .overrides = overrides,
+                                        .override_count =
+                                            kept->override_count + params->override_count,
+                                        .moved_folder = is_here ? NULL : kept->folder,
+                                        .moved_overrides = kept->override_count,
+                                        .made_calibration = calibration};
     const sonject_status status = path && overrides
                                       ? scene_source_read(&source, report, scene)
                                       : report_out_of_memory(report, "the scene's text");
