@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/statistics.h"
 #include "measure/calibration.h"
 #include "measure/contacts.h"
 
@@ -73,8 +74,7 @@ static float unevenness(const struct stored_swath *swath, size_t row, size_t col
     const size_t sizes[2] = {swath->rows, swath->columns};
     size_t part[2], first[2] = {row, column};
     for (int axis = 0; axis < 2; axis++) {
-        const size_t wanted = grain[axis] * side;
-        part[axis] = (wanted < sizes[axis] ? wanted : sizes[axis]) / PARTS;
+        part[axis] = smaller_size(grain[axis] * side, sizes[axis]) / PARTS;
         first[axis] = window_start(first[axis], side, PARTS * part[axis], sizes[axis]);
     }
     double sum = 0.0, squares = 0.0;
