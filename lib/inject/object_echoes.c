@@ -30,22 +30,43 @@ static int32_t cells_of(double resolution_m, double cell_m)
     return (int32_t)fmax(1.0, floor(resolution_m / (POINTS_PER_RESOLUTION * cell_m)));
 }
 
+/* Returns the rows of points that a tile's echo may peak in, `step` of the grid's strips apart.
+ * Parts of a slanting face may add up only in pings ahead or astern of it, as far as a real
+ * aperture's beam hears the field of glints. No point lies beyond both tile and patch. */
+static struct span rows_of_points(const struct tracer *tracer, const struct line_grid *tile,
+                                  const struct line_grid *grid, enum form_kind kind, int32_t step)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct point_response *response = &tracer->response;
+    const double per_tile_strip = (double)grid->strips_per_row / tile->strips_per_row;
+    const double shift = kind == FORM_FIELD && response->array_length_m > 0.0
+                             ? form_reach(view, response, kind, grid->strips_per_row)
+                             : cross_range_shift(response, view->farthest_m) *
+                                   grid->strips_per_row / view->row_spacing_m;
+    const struct span patch = {0, (int32_t)(view->rows * grid->strips_per_row)};
+    const struct span seen = span_join(points_over(tile->strips, per_tile_strip, step, 0.0),
+                                       points_over(patch, 1.0, step, 0.0));
+    return span_overlap(points_over(tile->strips, per_tile_strip, step, shift), seen);
+}
+
 /* Lays points over a tile, a quarter of the resolution apart in strips and bins of the grid, but at
- * least one strip and bin. */
+ * least one strip and bin. A field's details may be as fine along the track as W's band allows:
+ * parts of a long target add up in a few pings of a beam that is much wider. */
 static sonject_status peak_lattice_init(struct peak_lattice *lattice, const struct tracer *tracer,
-                                        const struct line_grid *tile, const struct line_grid *grid)
+                                        const struct line_grid *tile, const struct line_grid *grid,
+                                        enum form_kind kind)
 {
     const struct patch_view *view = &tracer->view;
     const double strip = view->row_spacing_m / grid->strips_per_row;
     const double bin = view->column_spacing_m / grid->bins_per_pixel;
     const double range =
         view_processor_range(view, (double)tile->bins.first / tile->bins_per_pixel);
-    const int32_t strips = cells_of(
-        cross_range_energy_width(&tracer->response, fmax(range, view->first_range_m)), strip);
+    const double width =
+        cross_range_energy_width(&tracer->response, fmax(range, view->first_range_m));
+    const int32_t strips =
+        cells_of(kind == FORM_FIELD ? fmin(width, tracer->response.strip_m) : width, strip);
     const int32_t bins = cells_of(range_energy_width(&tracer->response), bin);
-    const struct span rows =
-        points_over(tile->strips, (double)grid->strips_per_row / tile->strips_per_row, strips,
-                    cross_range_shift(&tracer->response, view->farthest_m) / strip);
+    const struct span rows = rows_of_points(tracer, tile, grid, kind, strips);
     const struct span columns =
         points_over(tile->bins, (double)grid->bins_per_pixel / tile->bins_per_pixel, bins,
                     range_shift(&tracer->response) / bin);
@@ -226,7 +247,8 @@ static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
 static sonject_status form_rough_peak(struct peak_lattice *lattice, struct tracer *tracer,
                                       const struct impulse_lines *tile)
 {
-    sonject_status status = peak_lattice_init(lattice, tracer, &tile->grid, &tile->grid);
+    sonject_status status =
+        peak_lattice_init(lattice, tracer, &tile->grid, &tile->grid, FORM_ENERGY);
     THEN(status, peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid));
     THEN(status, form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
                                 tile->strips.count, tile->plane[TILE_ENERGY], NULL));
@@ -342,7 +364,7 @@ static sonject_status find_glint_peak(struct object_former *former, struct trace
     if (line_grid_cells(&former->grid) == 0)
         return SONJECT_OK;
     if (!lattice->planes)
-        status = peak_lattice_init(lattice, tracer, &former->grid, &lines->grid);
+        status = peak_lattice_init(lattice, tracer, &former->grid, &lines->grid, FORM_FIELD);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = peak_lattice_begin(lattice, tracer, FORM_FIELD, &lines->grid);
     THEN(status, form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,

@@ -88,6 +88,52 @@ CLAIM(a_cylinder_peaks_at_its_ends)
                      CLOSED_FORM);
 }
 
+#define BEAM_RANGE 100.0
+#define BEAM_ARRAY 0.5
+
+/* Returns the target strength of a 1.5 m by 0.3 m cylinder, 1 m above the seabed, to an array. It
+ * is the largest over all pings of sqrt(a / 2 lambda) times the integral, along the cylinder, of
+ * sinc(D x / lambda R)^2 (r / R)^2 exp(2ik (R - r)). R and x lead from the ping to the cylinder. */
+static double cylinder_in_beam_db(double heading)
+{
+    const double altitude = 10.0, a = 0.15, length = 1.5;
+    const double step = length / 2000.0;
+    const double ground = sqrt(BEAM_RANGE * BEAM_RANGE - altitude * altitude);
+    const double down = altitude - 1.0 - a;
+    const double middle = hypot(ground, down) - a;
+    double largest = 0.0;
+    for (double ping = -2.0; ping <= 2.0; ping += 0.01) {
+        double complex sum = 0.0;
+        for (double s = 0.5 * (step - length); s < 0.5 * length; s += step) {
+            const double x = s * cos(heading) - ping;
+            const double range = hypot(hypot(ground + s * sin(heading), down) - a, x);
+            const double beam = sinc(BEAM_ARRAY * x / (WAVELENGTH * range)) * middle / range;
+            sum += step * beam * beam * cexp(4.0 * PI * I * (range - middle) / WAVELENGTH);
+        }
+        largest = fmax(largest, cabs(sum));
+    }
+    return decibels_of_amplitude(largest * sqrt(0.5 * a / WAVELENGTH));
+}
+
+/* The parts of a long target add up in a few pings, far fewer than the beam has, and those of a
+ * slanting one beside it. */
+CLAIM(a_cylinder_in_a_wide_beam)
+{
+    static const double headings[] = {0.0, 0.7 * PI / 180.0, PI / 180.0};
+    for (size_t i = 0; i < COUNT(headings) * COUNT(spacings); i++) {
+        const double heading = headings[i / COUNT(spacings)];
+        struct sea *sea = hang(i % COUNT(spacings), SHAPE_CYLINDER, 1.5, 0.3);
+        sea->sonar->kind = SONJECT_SONAR_REAL;
+        sea->sonar->array_length_m = BEAM_ARRAY;
+        sea->sonar->along_track_resolution_m = 0.0;
+        sea->sonar->bandwidth_hz = 5e3;
+        sea_object(sea, 0)->heading_rad = heading;
+        sea_move(sea, BEAM_RANGE);
+        expect_close("cylinder's target strength in a beam, dB", peak_db(sea),
+                     cylinder_in_beam_db(heading), CLOSED_FORM);
+    }
+}
+
 /* Pixels do not change the expected energy of a Lambert sphere, whose speckle is averaged out. It
  * is not compared with a closed form. */
 CLAIM(a_rough_sphere_wherever_pixels_lie)
