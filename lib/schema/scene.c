@@ -385,7 +385,9 @@ static void relate_injection(struct check *check, const void *structure)
 }
 
 static const struct field match_fields[] = {
-    {"response", "widths of the point response: the image's around the targets, or the sonar's",
+    {"response",
+     "widths of the point response: the image's around the targets (with a Gaussian pulse and a "
+     "synthetic aperture alone), or the sonar's",
      WORD(match_response) = {[SONJECT_MATCH_NOMINAL] = "nominal", [SONJECT_MATCH_IMAGE] = "image"},
      .preset = SONJECT_MATCH_IMAGE},
     {"looks", "looks averaged in a magnitude pixel: image, or 1 to 64",
@@ -413,8 +415,8 @@ static const struct field injection_fields[] = {
      .range = "below 0 dB (the seabed's own level)", .preset = -25.0, .words = {"estimate"},
      .word_values = {-25.0}, .read = read_noise_floor, .unit = "dB, or estimate"},
     {"noise_floor_over",
-     "seabed level that noise_floor refers to everywhere, re full scale or an amplitude of 1; by "
-     "default the level about each pixel",
+     "seabed level that noise_floor refers to everywhere: of a decibel curve, or over full scale "
+     "(of floats over 1); by default the level about each pixel",
      QUANTITY(noise_floor_over_db, DECIBEL), WITHIN(-200.0, 200.0), NONE_IF_NAN},
     {"influence", "smallest change, relative to the seabed, that makes a pixel the target's",
      QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
