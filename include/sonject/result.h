@@ -103,10 +103,11 @@ typedef struct sonject_object_truth {
     sonject_box both;
     uint64_t highlight_pixels;
     uint64_t shadow_pixels;
-    double target_strength_db;    /* 10 log10 of the echo's largest expected cross-section in m^2,
-                                     wherever pixels lie and however far apart they are: of glints
-                                     through the point response, of rough surfaces with speckle
-                                     averaged out. -infinity: nothing of the object is in view */
+    double target_strength_db;    /* 10 log10 of the largest expected cross-section in m^2 of the
+                                     echo by one interaction, wherever pixels lie and however far
+                                     apart they are: of glints through the point response, of rough
+                                     surfaces with speckle averaged out. -infinity: nothing of the
+                                     object is in view */
     double highlight_contrast_db; /* see sonject_contact_measures; of this object alone, and of
                                      expected energies without speckle */
     double shadow_contrast_db;

@@ -388,11 +388,14 @@ static const struct section burial_section = {ROWS(burial_fields), .choice = "fr
 
 static const struct field level_fields[] = {
     {"target_strength",
-     "peak's target strength, between pixels too, speckle averaged out, re 1 m^2",
+     "target strength of the peak by one interaction, between pixels too, speckle averaged out, re "
+     "1 m^2",
      QUANTITY(level_db, DECIBEL), WITHIN(-200.0, 200.0),
      SETS(level_kind, SONJECT_LEVEL_TARGET_STRENGTH)},
-    {"over_seabed", "echo's peak level over the local mean seabed", QUANTITY(level_db, DECIBEL),
-     WITHIN(-200.0, 200.0), SETS(level_kind, SONJECT_LEVEL_OVER_SEABED)},
+    {"over_seabed",
+     "echo's peak level over the local mean seabed; by one interaction, as target_strength",
+     QUANTITY(level_db, DECIBEL), WITHIN(-200.0, 200.0),
+     SETS(level_kind, SONJECT_LEVEL_OVER_SEABED)},
 };
 static const struct section level_section = {ROWS(level_fields),
                                              .choice = "target_strength over_seabed"};
