@@ -27,8 +27,9 @@ struct patch_level {
 /* The facts that all pixels of the patch tell. */
 struct patch_facts {
     double mean_intensity;
-    double noise_ratio;  /* noise energy over level */
-    bool measures_noise; /* estimated, from a shadow of the patch */
+    size_t first_heard, end_heard; /* columns before and after which all pixels are 0 */
+    double noise_ratio;            /* noise energy over level */
+    bool measures_noise;           /* estimated, from a shadow of the patch */
 };
 
 /* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (all pixels are 0, or one is

@@ -59,23 +59,33 @@ static double sum_of_squares(const float *values, size_t count, float *least)
     return sum;
 }
 
-static sonject_status check_pixels(struct report *report, const struct patch_view *view,
-                                   const float *pixels, bool is_complex, double *mean)
+static sonject_status check_pixels(struct patch_facts *facts, struct report *report,
+                                   const struct patch_view *view, const float *pixels,
+                                   bool is_complex)
 {
-    const size_t numbers = view->columns * (is_complex ? 2 : 1);
+    const size_t parts = is_complex ? 2 : 1, numbers = view->columns * parts;
+    size_t first = numbers, end = 0; /* numbers before and after which all rows are 0 */
     double sum = 0.0;
     for (size_t row = 0; row < view->rows; row++) {
+        const float *values = pixels + row * numbers;
         float least;
-        const double of_row = sum_of_squares(pixels + row * numbers, numbers, &least);
+        const double of_row = sum_of_squares(values, numbers, &least);
         if (!(of_row <= INTENSITY_MOST) || (least < 0.0f && !is_complex))
-            CHECK(check_row(report, view, pixels + row * numbers, row, is_complex));
+            CHECK(check_row(report, view, values, row, is_complex));
+        for (size_t i = 0; i < first; i++)
+            first = values[i] != 0.0f ? i : first;
+        for (size_t i = numbers; i > end; i--)
+            end = values[i - 1] != 0.0f ? i : end;
         sum += of_row;
     }
-    *mean = sum / (double)(view->rows * view->columns);
-    if (!(*mean > 1e-30))
+    facts->first_heard = first / parts;
+    facts->end_heard = (end + parts - 1) / parts;
+    facts->mean_intensity = sum / (double)(view->rows * view->columns);
+    if (!(facts->mean_intensity > 1e-30))
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              *mean > 0.0 ? "the patch's amplitudes are below 1e-15: scale them"
-                                          : "the patch has no pixel above 0: choose another patch");
+                              facts->mean_intensity > 0.0
+                                  ? "the patch's amplitudes are below 1e-15: scale them"
+                                  : "the patch has no pixel above 0: choose another patch");
     return SONJECT_OK;
 }
 
@@ -138,7 +148,7 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
                                 const float *pixels, bool is_complex)
 {
     memset(facts, 0, sizeof *facts);
-    CHECK(check_pixels(report, view, pixels, is_complex, &facts->mean_intensity));
+    CHECK(check_pixels(facts, report, view, pixels, is_complex));
     if (!scene->injection.estimate_noise) {
         facts->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
         return SONJECT_OK;

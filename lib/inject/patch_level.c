@@ -51,14 +51,26 @@ float *window_intensities(const struct window *at, const struct patch_view *view
     return intensity;
 }
 
-/* A region of the patch whose level is sought. Its first columns are in the water column. */
+/* A region of the patch whose level is sought. Its first columns may be in the water column, and
+ * those that the patch's image leaves blank at its sides are no seabed either. */
 struct level_region {
     const struct scene *scene;
     const struct patch_view *view; /* the patch's */
     struct window at;
     size_t water_columns;
-    double mean; /* mean intensity of the patch */
+    const struct patch_facts *facts; /* the patch's */
 };
+
+static bool is_blank(const struct level_region *region, size_t i)
+{
+    const size_t column = region->at.first_column + i % region->at.columns;
+    return column < region->facts->first_heard || column >= region->facts->end_heard;
+}
+
+static bool is_water(const struct level_region *region, size_t i)
+{
+    return i % region->at.columns < region->water_columns;
+}
 
 static sonject_status smooth(struct report *report, const struct level_region *region,
                              const float *values, double radius_m, float *mean)
@@ -84,16 +96,17 @@ static sonject_status smooth_weighted(struct report *report, const struct level_
     return SONJECT_OK;
 }
 
-/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby. */
-static sonject_status level_beside_water(struct report *report, const struct level_region *region,
-                                         const float *intensity, float *level)
+/* Finds the local mean of the seabed alone. In the water column it is that of the seabed nearby.
+ * Blank pixels have none. */
+static sonject_status level_of_seabed(struct report *report, const struct level_region *region,
+                                      const float *intensity, float *level)
 {
     const size_t columns = region->at.columns;
     const size_t count = region->at.rows * columns;
     float *weights = allocate_array(count, sizeof *weights);
     CHECK_MEMORY(report, weights, "the patch");
     for (size_t i = 0; i < count; i++) {
-        weights[i] = i % columns < region->water_columns ? 0.0f : 1.0f;
+        weights[i] = is_water(region, i) || is_blank(region, i) ? 0.0f : 1.0f;
         level[i] = intensity[i];
     }
     const sonject_status status = smooth_weighted(report, region, level, weights);
@@ -102,6 +115,9 @@ static sonject_status level_beside_water(struct report *report, const struct lev
         if (!(weights[i] > SHARE_LEAST) && has_neighbour)
             level[i] = level[i + 1];
     }
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        if (is_blank(region, i) && !is_water(region, i))
+            level[i] = 0.0f;
     free(weights);
     return status;
 }
@@ -123,30 +139,30 @@ static bool may_have_echoes(const struct level_region *region, const float *inte
 static sonject_status leave_out_echoes(struct report *report, const struct level_region *region,
                                        const float *intensity, float *level)
 {
-    const size_t columns = region->at.columns;
-    const size_t count = region->at.rows * columns;
+    const size_t count = region->at.rows * region->at.columns;
     float *values = allocate_array(2 * count, sizeof *values);
     CHECK_MEMORY(report, values, "the patch");
     float *weights = values + count;
     size_t echoes = 0;
     for (size_t i = 0; i < count; i++) {
         values[i] = sqrtf(sqrtf(intensity[i]));
-        weights[i] = i % columns < region->water_columns || intensity[i] == 0.0f ? 0.0f : 1.0f;
+        weights[i] = is_water(region, i) || intensity[i] == 0.0f ? 0.0f : 1.0f;
     }
     sonject_status status = smooth_weighted(report, region, values, weights);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
         const float square = values[i] * values[i];
-        const bool is_water = i % columns < region->water_columns;
+        const bool is_seabed = !is_water(region, i) && !is_blank(region, i);
         const bool is_echo =
             square > 0.0f && intensity[i] > BRIGHTEST / ROOT_LEVEL * square * square;
         values[i] = intensity[i];
-        weights[i] = is_water || is_echo ? 0.0f : 1.0f;
-        echoes += !is_water && is_echo;
+        weights[i] = !is_seabed || is_echo ? 0.0f : 1.0f;
+        echoes += is_seabed && is_echo;
     }
     if (echoes > 0)
         THEN(status, smooth_weighted(report, region, values, weights));
     for (size_t i = 0; echoes > 0 && status == SONJECT_OK && i < count; i++)
-        level[i] = weights[i] > SHARE_LEAST ? values[i] : level[i];
+        if (weights[i] > SHARE_LEAST && (is_water(region, i) || !is_blank(region, i)))
+            level[i] = values[i];
     free(values);
     return status;
 }
@@ -157,14 +173,15 @@ static sonject_status find_level(struct report *report, const struct level_regio
                                  const float *intensity, float *level)
 {
     const size_t count = region->at.rows * region->at.columns;
-    CHECK(region->water_columns > 0
-              ? level_beside_water(report, region, intensity, level)
+    const bool has_blanks = count > 0 && (is_blank(region, 0) || is_blank(region, count - 1));
+    CHECK(region->water_columns > 0 || has_blanks
+              ? level_of_seabed(report, region, intensity, level)
               : smooth(report, region, intensity, region->scene->seabed.level_radius_m, level));
     if (region->scene->injection.mode == SONJECT_MODE_COMPOSITE &&
         may_have_echoes(region, intensity, level))
         CHECK(leave_out_echoes(report, region, intensity, level));
     for (size_t i = 0; i < count; i++)
-        level[i] = fmaxf(level[i], (float)(LEVEL_FLOOR * region->mean));
+        level[i] = fmaxf(level[i], (float)(LEVEL_FLOOR * region->facts->mean_intensity));
     return SONJECT_OK;
 }
 
@@ -193,7 +210,8 @@ static size_t widened(size_t first, size_t count, size_t reach, size_t all, size
 
 /* Returns the region that tells the level in the window, with seabed behind the water column. */
 static struct level_region region_about(const struct scene *scene, const struct patch_view *view,
-                                        const struct window *window, double mean)
+                                        const struct window *window,
+                                        const struct patch_facts *facts)
 {
     const sonject_seabed_params *seabed = &scene->seabed;
     const double radius = seabed->map == SONJECT_MAP_DESPECKLED
@@ -201,7 +219,7 @@ static struct level_region region_about(const struct scene *scene, const struct 
                               : seabed->level_radius_m;
     const size_t reach = local_mean_reach(radius / view->column_spacing_m);
     const size_t water = view_water_columns(view);
-    struct level_region region = {.scene = scene, .view = view, .mean = mean};
+    struct level_region region = {.scene = scene, .view = view, .facts = facts};
     region.at.rows =
         widened(window->first_row, window->rows, local_mean_reach(radius / view->row_spacing_m),
                 view->rows, &region.at.first_row);
@@ -246,8 +264,7 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
 {
     const struct window window = {tracer->view.first_row, tracer->view.rows,
                                   tracer->view.first_column, tracer->view.columns};
-    const struct level_region region =
-        region_about(tracer->scene, view, &window, facts->mean_intensity);
+    const struct level_region region = region_about(tracer->scene, view, &window, facts);
     struct report *report = tracer->report;
     const size_t wide = region.at.rows * region.at.columns;
     const size_t count = window.rows * window.columns;

@@ -345,14 +345,17 @@ objects: [{name: box, shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, posi
     assert decibels(columns[115:170] / seabed).max() < -50
 
 
-@pytest.mark.parametrize("echo", ["a pixel", "a target"])
+@pytest.mark.parametrize("echo", ["a pixel", "a target", "a blank side", "a blank side and a pixel"])
 def test_echoes_in_the_image_move_no_levels(sonject, tmp_path, echo):
-    """A target's levels hold beside one that the image shows already, or beside a single pixel at 66 dB."""
+    """A target's levels hold beside one that the image shows already, beside a single pixel at 66 dB, and beside
+    columns in which nothing was heard."""
     plain = 0.05 * numpy.random.default_rng(1).rayleigh(numpy.sqrt(0.5), (400, 500)).astype(numpy.float32)
     beside = plain.copy()
-    if echo == "a pixel":
+    if "blank" in echo:
+        beside[:, :235] = 0
+    if "pixel" in echo:
         beside[260, 250] = 100
-    else:
+    if echo == "a target":
         beside[230:240, 240:260] *= 10
     scene = SCENE.format(path="image.npy", row_spacing=0.1, column_spacing=0.05, first_range=40,
                          transfer="  transfer: {kind: amplitude}", patch=(0, 0, 400, 500), sonar=SONAR,
