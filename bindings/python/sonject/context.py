@@ -7,6 +7,7 @@ import contextlib
 import ctypes
 import importlib
 import logging
+import signal
 import threading
 import weakref
 from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar, Union
@@ -46,20 +47,60 @@ def _new_bar() -> Optional[Bar]:
         return None
 
 
+class SignalBridge:
+    """Keeps what the handlers of signals raise during a call, such as KeyboardInterrupt, for its end.
+
+    Python calls handlers when a callback begins, before its first line. Nothing there could catch
+    what they raise: ctypes would print it and go on.
+    """
+
+    _NUMBERS = [
+        getattr(signal, name) for name in ("SIGALRM", "SIGTERM", "SIGINT") if hasattr(signal, name)
+    ]
+
+    def __init__(self) -> None:
+        self.error: Optional[BaseException] = None
+        self._handlers: dict[int, Any] = {}
+
+    def _called(self, number: int, frame: Any) -> None:
+        try:
+            self._handlers[number](number, frame)
+        except BaseException as error:  # raised again for the caller of the library
+            self.error = error
+
+    @contextlib.contextmanager
+    def keeping(self) -> Iterator[None]:
+        """Stands before the handlers that are written in Python. Only the main thread may do so."""
+        try:
+            if threading.current_thread() is threading.main_thread():
+                for number in self._NUMBERS:
+                    handler = signal.getsignal(number)
+                    if callable(handler):
+                        self._handlers[number] = handler
+                        signal.signal(number, self._called)
+            yield
+        finally:
+            for number, handler in self._handlers.items():
+                if signal.getsignal(number) == self._called:
+                    signal.signal(number, handler)
+
+
 class ProgressBridge:
     """Calls a progress function.
 
-    There is a callback even without a function, so that a pending KeyboardInterrupt finds Python
-    code to be raised in.
+    There is a callback even without a function, so that Python calls the handlers of signals.
     """
 
     def __init__(self, progress: Optional[Progress]) -> None:
         self.error: Optional[BaseException] = None
+        self.signals = SignalBridge()
         self._progress = None if isinstance(progress, bool) else progress
         self._bar = _new_bar() if progress is True else None
         self.callback = s.sonject_progress_function(self._called)
 
     def _called(self, _user: Optional[int], fraction: float, stage: Optional[bytes]) -> int:
+        if self.signals.error is not None:
+            return 1
         try:
             function = self._progress if self._bar is None else self._bar
             return 0 if function is None else int(bool(function(fraction, text(stage))))
@@ -228,11 +269,12 @@ class Context:
     def call(self, name: str, *arguments: Any, bridge: Optional[ProgressBridge] = None) -> None:
         """Calls the library function name, which returns a status.
 
-        Handles among the arguments stand for their pointers. Raises exceptions of callbacks first,
-        then SonjectError.
+        Handles among the arguments stand for their pointers. Raises exceptions of the handlers of
+        signals and of callbacks first, then SonjectError.
         """
+        signals = SignalBridge() if bridge is None else bridge.signals
         try:
-            with self._exclusive():
+            with self._exclusive(), signals.keeping():
                 # Pointers are read under the lock: another thread may close a handle before.
                 values = [
                     each.pointer if isinstance(each, (Handle, Context)) else each
@@ -245,7 +287,7 @@ class Context:
         finally:
             if bridge is not None:
                 bridge.close()
-        for callback in (bridge, self._log):
+        for callback in (signals, bridge, self._log):
             if callback is not None and callback.error is not None:
                 error, callback.error = callback.error, None
                 raise error

@@ -3,8 +3,11 @@
 import ctypes
 import gc
 import math
+import os
 import pathlib
+import signal
 import threading
+import time
 
 import numpy
 import pytest
@@ -255,6 +258,48 @@ def test_what_progress_raises_is_raised(amplitude_patch, make_scene, kind):
 
     with pytest.raises(kind, match="from the callback"):
         sonject.inject(amplitude_patch, make_scene(), progress=progress)
+
+
+def signal_while_it_works(number):
+    """Returns a progress function; a thread sends the signal while the library works on."""
+    told = []
+
+    def send():
+        time.sleep(0.02)
+        os.kill(os.getpid(), number)
+
+    def progress(fraction, stage):
+        told.append(fraction)
+        if len(told) == 1:
+            threading.Thread(target=send).start()
+
+    return progress, told
+
+
+def test_ctrl_c_ends_the_work_and_is_raised(make_scene, amplitude_patch, capfd):
+    scene = make_scene(injection={"rays": 256, "interactions": 2})  # works for seconds
+    progress, told = signal_while_it_works(signal.SIGINT)
+    handler = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        sonject.inject(amplitude_patch, scene, progress=progress)
+    assert told[-1] < 1
+    assert signal.getsignal(signal.SIGINT) == handler
+    assert "ignored" not in capfd.readouterr().err
+
+
+def test_what_the_handler_of_a_signal_raises_is_raised(make_scene, amplitude_patch, request):
+    scene = make_scene(injection={"rays": 256, "interactions": 2})
+
+    def out_of_time(number, frame):
+        raise TimeoutError("out of time")
+
+    before = signal.signal(signal.SIGTERM, out_of_time)
+    request.addfinalizer(lambda: signal.signal(signal.SIGTERM, before))
+    progress, told = signal_while_it_works(signal.SIGTERM)
+    with pytest.raises(TimeoutError, match="out of time"):
+        sonject.inject(amplitude_patch, scene, progress=progress)
+    assert told[-1] < 1
+    assert signal.getsignal(signal.SIGTERM) == out_of_time
 
 
 def test_a_callback_cannot_use_its_context(amplitude_patch, make_scene):
