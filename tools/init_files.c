@@ -143,9 +143,12 @@ static void add_input(FILE *file, const struct interview *interview)
     add_path(file, "input:\n  path: ", interview, options->image);
     fputc('\n', file);
     add_key(file, "  ", "channel", options->channel, "");
-    add_key(file, "  ", "array", options->array, "");
-    fprintf(file, "  calibration: %s # grey-level curve, noise floor and more, as measured\n",
-            last_part(interview->calibration));
+    if (options->array) {
+        add_text(file, "  array: ", options->array);
+        fputc('\n', file);
+    }
+    add_text(file, "  calibration: ", last_part(interview->calibration));
+    fputs(" # grey-level curve, noise floor and more, as measured\n", file);
     if (interview->has_geometry) {
         fputs("  geometry: from_file\n", file);
         return;
@@ -311,11 +314,14 @@ static void add_swaths(FILE *file, const struct interview *interview, const char
         const char *side = first && strcmp(first, sides[1]) == 0 ? sides[1 - i] : sides[i];
         add_path(file, "  - path: ", interview, options->image);
         fputc('\n', file);
-        if (has_both && answered)
+        if (has_both && answered) {
             fprintf(file, "    set: {input.geometry.side: %s}\n", side);
-        else if (has_both)
-            fprintf(file, "    set: {input.channel: %s, input.calibration: %s}\n", side,
-                    last_part(i == 0 ? interview->calibration : interview->other_calibration));
+        } else if (has_both) {
+            fprintf(file, "    set: {input.channel: %s, ", side);
+            add_text(file, "input.calibration: ",
+                     last_part(i == 0 ? interview->calibration : interview->other_calibration));
+            fputs("}\n", file);
+        }
         fprintf(file,
                 "    # avoid: [{along_track: [%.3g m, %.3g m], slant_range: [%.3g m, %.3g m]}] # "
                 "boxes of contacts to keep away from\n",
@@ -352,10 +358,10 @@ bool write_campaign(const struct interview *interview, const char *checked)
         return false;
     fprintf(file,
             "# Make it: sonject campaign %s -o FOLDER. sonject help KEY explains keys.\n"
-            "sonject_campaign: 1\n"
-            "scene: %s # has all values that are not drawn\n"
-            "images: 500\n",
-            last_part(interview->campaign), last_part(interview->scene));
+            "sonject_campaign: 1\n",
+            last_part(interview->campaign));
+    add_text(file, "scene: ", last_part(interview->scene));
+    fputs(" # has all values that are not drawn\nimages: 500\n", file);
     add_chip(file, interview, checked);
     fputs("empty: 0.25 # this share of the images shows bare seabed\n"
           "visible: {highlight: 1.2 dB, shadow: -2.3 dB} # targets that nobody would see are drawn "

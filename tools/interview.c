@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <jansson.h>
+
 #include "base/text.h"
 #include "console.h"
 
@@ -57,16 +59,27 @@ const char *answer_about(const struct interview *interview, const char *key)
     return NULL;
 }
 
+/* Writes key=name. The name is in quotes (JSON), since it may have characters that mean something
+ * to YAML. One that is not UTF-8 stays as it is, and whoever reads it says so. */
+static void write_name(char override[2 * NAME], const char *key, const char *name)
+{
+    json_t *value = json_string(name);
+    char *quoted = value ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    snprintf(override, 2 * NAME, "%s=%s", key, quoted ? quoted : name);
+    free(quoted);
+    json_decref(value);
+}
+
 sonject_status read_image_scene(const struct interview *interview, const char *text,
                                 sonject_scene **scene)
 {
     const struct init_options *options = interview->options;
     const char *overrides[ANSWERS + 5];
-    char path[NAME], channel[ANSWER], array[NAME];
+    char path[2 * NAME], channel[ANSWER], array[2 * NAME];
     uint32_t count = 0;
-    snprintf(path, sizeof path, "input.path=%s", options->image);
+    write_name(path, "input.path", options->image);
     snprintf(channel, sizeof channel, "input.channel=%s", options->channel ? options->channel : "");
-    snprintf(array, sizeof array, "input.array=%s", options->array ? options->array : "");
+    write_name(array, "input.array", options->array ? options->array : "");
     overrides[count++] = path;
     if (options->channel)
         overrides[count++] = channel;

@@ -95,6 +95,15 @@ def test_no_answer_leaves_no_file(sonject, image):
     assert [path.name for path in image.parent.iterdir()] == ["swath.npy"]
 
 
+@pytest.mark.parametrize("stem", ["[2] line", "line #3: a"])
+def test_names_may_have_the_characters_of_yaml(sonject, image, stem):
+    image.rename(image.parent / f"{stem}.npy")
+    answer = init(sonject, f"{stem}.npy", "--campaign", answers=ANSWERS)
+    assert answer.returncode == 0, answer.stderr
+    sonject.done("run", f"{stem}.yaml", "-o", "out")
+    sonject.done("check", f"{stem}_campaign.yaml")
+
+
 def test_a_file_that_is_there_stays(sonject, image):
     image.with_suffix(".yaml").write_text("mine")
     answer = init(sonject, "swath.npy", answers=ANSWERS)
@@ -107,7 +116,7 @@ def test_an_array_makes_a_sidescan_and_the_scene_may_lie_elsewhere(sonject, imag
     answer = init(sonject, "swath.npy", "-o", "scenes/mine.yaml", answers=[*ANSWERS[:-1], "0.5 m"])
     assert answer.returncode == 0, answer.stderr
     scene = (image.parent / "scenes" / "mine.yaml").read_text()
-    assert "kind: real\n  array: {length: 0.5 m}" in scene and "calibration: mine_calibration.yaml" in scene
+    assert "kind: real\n  array: {length: 0.5 m}" in scene and 'calibration: "mine_calibration.yaml"' in scene
     sonject.done("check", "scenes/mine.yaml")
 
 
@@ -193,8 +202,8 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
         "line.xtf", "line.yaml", "line_calibration.yaml", "line_campaign.yaml", "line_port_calibration.yaml",
         "line_port_quicklook.png", "line_quicklook.png", "rock.obj"]
     text = (tmp_path / "line_campaign.yaml").read_text()
-    assert "set: {input.channel: starboard, input.calibration: line_calibration.yaml}" in text
-    assert "set: {input.channel: port, input.calibration: line_port_calibration.yaml}" in text
+    assert 'set: {input.channel: starboard, input.calibration: "line_calibration.yaml"}' in text
+    assert 'set: {input.channel: port, input.calibration: "line_port_calibration.yaml"}' in text
     assert re.search(r"^grey: \[-\d+ dB, -?\d+ dB\] ", text, flags=re.M)
     assert 'mesh: {file: "rock.obj", unit: mm, nose: y}' in text and "splits: {train: 0.5, val: 0.5}" in text
     for name, side in ("line", "starboard"), ("line_port", "port"):
