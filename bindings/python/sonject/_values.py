@@ -117,6 +117,11 @@ def file_name(name: str, value: Any) -> bytes:
     return encoded
 
 
+def absolute_file_name(name: str, value: Any) -> bytes:
+    """Returns a path that means the same file after a change of the working directory."""
+    return os.path.abspath(file_name(name, value))
+
+
 def optional_file_name(name: str, value: Any) -> Optional[bytes]:
     return None if value is None else file_name(name, value)
 

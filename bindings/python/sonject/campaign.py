@@ -10,7 +10,8 @@ from typing import Any, Iterator, Optional, Sequence, Tuple, Union
 from . import _interface as s
 from ._classes import CampaignImage as CampaignImage
 from ._values import (
-    Overrides, PathLike, choice, file_name, filled, given, initialised, override_texts, shard_values,
+    Overrides, PathLike, absolute_file_name, choice, file_name, filled, given, initialised,
+    override_texts, shard_values,
 )
 from .context import Context, Handle, Progress, ProgressBridge, counted, default_context
 from .enumerations import LabelPart
@@ -55,7 +56,7 @@ class Campaign(Handle):
             s.sonject_campaign,
             "sonject_campaign_read",
             context,
-            file_name("path", path),
+            absolute_file_name("path", path),
             ctypes.byref(params),
         )
         super().__init__(context, pointer)

@@ -14,7 +14,8 @@ import numpy
 
 from . import _interface as s
 from ._values import (
-    Overrides, PathLike, file_name, filled, key_text, override_texts, plain_text, real_numbers,
+    Overrides, PathLike, absolute_file_name, file_name, filled, key_text, override_texts, plain_text,
+    real_numbers,
 )
 from .context import Context, Handle, counted, default_context
 from .errors import SonjectError
@@ -66,7 +67,7 @@ class Scene(Handle):
         """
         context = default_context() if context is None else context
         texts = override_texts(overrides)
-        pointer = _read(context, file_name("path", path),
+        pointer = _read(context, absolute_file_name("path", path),
                         overrides=texts, override_count=len(texts))
         return cls._adopt(context, pointer)
 

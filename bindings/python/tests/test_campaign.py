@@ -50,6 +50,14 @@ def test_loaders_may_pickle_a_campaign(campaign, tmp_path, monkeypatch):
     assert not numpy.array_equal(again[number].image, swath[:64, :64])
 
 
+def test_the_working_directory_may_change(campaign, tmp_path, monkeypatch):
+    whole, _ = campaign
+    monkeypatch.chdir(tmp_path)
+    again = sonject.Campaign("campaign.yaml")
+    monkeypatch.chdir("/")
+    assert numpy.array_equal(again[0].image, whole[0].image)
+
+
 def test_the_scene_of_an_image_is_one_to_inject(campaign):
     whole, swath = campaign
     number = next(i for i in range(6) if whole.describe(i).object_count)

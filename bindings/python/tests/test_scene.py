@@ -222,6 +222,22 @@ def test_a_scene_is_written_for_other_folders(tmp_path, context, amplitude_patch
     assert [path.name for path in written.parent.iterdir()] == ["scene.yaml"]
 
 
+def test_a_scene_keeps_its_image_when_the_working_directory_changes(tmp_path, context, monkeypatch):
+    for line in (1, 2):
+        (tmp_path / f"line_{line}").mkdir()
+        monkeypatch.chdir(tmp_path / f"line_{line}")
+        numpy.save("swath.npy", numpy.full((ROWS, COLUMNS), line, numpy.float32))
+    pathlib.Path(tmp_path / "line_1" / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{path: swath.npy, geometry: {GEOMETRY}}}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n")
+    monkeypatch.chdir(tmp_path / "line_1")
+    scene = sonject.Scene.read("scene.yaml", context=context)
+    monkeypatch.chdir(tmp_path / "line_2")
+    sonject.run(scene, "out")
+    assert numpy.load("out/image.npy").max() == 1
+    assert scene["input.path"] == str(tmp_path / "line_1" / "swath.npy")
+
+
 def test_a_scene_is_written_whole_or_not_at_all(make_scene, tmp_path, monkeypatch):
     path = tmp_path / "scene.yaml"
     path.write_text("before")
