@@ -42,7 +42,10 @@ static sonject_status open_round(struct fit *fit, uint32_t round, struct sonject
         source.overrides = overrides;
         source.override_count = given + 3;
         source.has_one_target = true;
+        const sonject_log_function log = fit->report->log;
+        fit->report->log = NULL; /* it told the notes when it opened the campaign to be fitted */
         status = campaign_open(fit->report, &source, opened);
+        fit->report->log = log;
         if (status == SONJECT_OK) {
             /* faint targets are left out, not drawn again, since time is limited */
             (*opened)->campaign.faint = FAINT_DIFFICULT;

@@ -130,6 +130,8 @@ def test_bright_points_tell_no_heights(sonject, folder):
     assert notes == ["only 0 of 13 contacts show a shadow, so heights and the noise floor stay as they are",
                      "sizes that are fixed or come from a table are not fitted: rock (length, width)"]
     assert page["unmatched"] and all(note in done.stderr for note in notes)
+    told = done.stderr.splitlines()
+    assert "seabed_1.tif tells other spacings" in done.stderr and len(told) == len(set(told))  # not in every round
 
 
 def test_a_byte_order_mark_is_not_in_the_fitted_file(sonject, folder):
