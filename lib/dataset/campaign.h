@@ -150,10 +150,15 @@ struct item {
     struct campaign *campaign; /* campaign that has this item */
     char class_name[SONJECT_NAME_CAPACITY];
     double weight;
-    char *object; /* the object's section of a scene, in flow style; owned */
+    char *object;                  /* the object's section of a scene, in flow style; owned */
+    const struct tree_node *fixed; /* the same section, in the campaign's tree */
     struct draws draws;
     struct tree_place place;
 };
+
+/* Returns whether an item states a key, or a value for all of the key's section. The campaign's
+ * draws of all objects leave such a key out. */
+bool item_fixes(const struct item *item, const char *key);
 
 struct object_columns {
     double first, last; /* none where first is above last */

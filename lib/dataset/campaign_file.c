@@ -139,6 +139,7 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
         return refuse_value(reader, node, "must be a section, as of objects in a scene");
     for (size_t i = 0; i < node->count; i++)
         campaign_check_entry(reader, &node->entries[i], node->entries[i].key, true);
+    item->fixed = node;
     return tree_override_text(reader->report, node, &item->object);
 }
 

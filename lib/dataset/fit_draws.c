@@ -215,8 +215,9 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
         const size_t first = draws->count;
         char path[48];
         snprintf(path, sizeof path, "targets[%u].draw", (unsigned)i);
-        draws->lacks_level[i] = !draws_have_key(&item->draws, LEVEL_KEY) &&
-                                !draws_have_key(&campaign->object_draws, LEVEL_KEY);
+        draws->lacks_level[i] =
+            !draws_have_key(&item->draws, LEVEL_KEY) &&
+            (item_fixes(item, LEVEL_KEY) || !draws_have_key(&campaign->object_draws, LEVEL_KEY));
         if (strstr(item->object, "\"target_strength\": "))
             return tree_failure(&campaign->tree, item->place, path,
                                 "fit moves levels over the seabed; remove the target_strength");

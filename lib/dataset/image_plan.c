@@ -260,8 +260,29 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
 #define CANDIDATES 16   /* places tried for an object beside others */
 #define PLACES_MAX 1000 /* tries to find an object a free place */
 
-/* Draws an object's values: its own draws, and the draws of all objects that it has not. number: of
- * the object; 0 is the target, if there is one. is_beside: clutter, or another target. */
+bool item_fixes(const struct item *item, const char *key)
+{
+    const struct tree_node *node = item->fixed;
+    for (;;) {
+        char name[64];
+        const size_t length = strcspn(key, ".");
+        snprintf(name, sizeof name, "%.*s", (int)length, key);
+        const struct tree_entry *entry = tree_find(node, name);
+        if (!entry || !key[length] || entry->value.kind != TREE_SECTION)
+            return entry != NULL;
+        node = &entry->value;
+        key += length + 1;
+    }
+}
+
+static bool has_own(const struct item *item, const char *key)
+{
+    return draws_have_key(&item->draws, key) || item_fixes(item, key);
+}
+
+/* Draws an object's values: its own draws, and the draws of all objects whose keys it does not have
+ * itself. number: of the object; 0 is the target, if there is one. is_beside: clutter, or another
+ * target. */
 static void draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
                         bool is_beside)
 {
@@ -277,7 +298,7 @@ static void draw_object(struct drawing *drawing, const struct item *item, uint32
         for (size_t i = 0; i < both[k]->count; i++) {
             char text[DISTRIBUTION_TEXT_CAPACITY], ratio[DISTRIBUTION_TEXT_CAPACITY];
             const struct distribution *distribution = &both[k]->list[i];
-            if (k == 0 && draws_have_key(&item->draws, distribution->key))
+            if (k == 0 && has_own(item, distribution->key))
                 continue;
             const char *value =
                 is_beside && drawing->trial == NO_TRIAL
@@ -552,12 +573,13 @@ uint32_t image_plan_steps(const struct campaign *campaign, const struct item *it
                 : longest(&campaign->draws, 2);
 }
 
-/* Returns cells times the cells of the draws' axes, at most UINT64_MAX. */
-static uint64_t count_cells(const struct draws *draws, const struct draws *but, uint64_t cells)
+/* Returns cells times the cells of the draws' axes, at most UINT64_MAX. but: item whose own keys do
+ * not count; NULL: all count. */
+static uint64_t count_cells(const struct draws *draws, const struct item *but, uint64_t cells)
 {
     for (size_t i = 0; i < draws->count; i++) {
         const uint32_t steps = distribution_steps(&draws->list[i]);
-        if (steps > 0 && !(but && draws_have_key(but, draws->list[i].key)))
+        if (steps > 0 && !(but && has_own(but, draws->list[i].key)))
             cells = cells > UINT64_MAX / steps ? UINT64_MAX : cells * steps;
     }
     return cells;
@@ -571,7 +593,7 @@ sonject_status image_plan_check_grid(const struct campaign *campaign)
         for (size_t j = 0; j < campaign->split_count; j++)
             images += campaign->splits[j].shares[CATEGORY_TARGET + i];
         uint64_t cells = count_cells(&campaign->draws, NULL, 1);
-        cells = count_cells(&campaign->object_draws, &item->draws, cells);
+        cells = count_cells(&campaign->object_draws, item, cells);
         cells = count_cells(&item->draws, NULL, cells);
         if (item->weight > 0.0 && cells > images)
             return tree_failure(&campaign->tree, item->place, "targets",

@@ -979,6 +979,29 @@ def test_a_row_of_a_table_is_drawn_whole(ground, command):
     assert_refused(answer, 2, "differs in the table of targets[0]")
 
 
+@pytest.mark.parametrize("design", ["stratified", "grid"])
+def test_what_an_object_states_is_not_drawn_for_all(ground, command, design):
+    """Also where the draw of all is of a part of it, as burial.fraction is of burial."""
+    for fixed, drawn, key, value in (
+            ("heading: 30 deg", "heading: {uniform: [60 deg, 90 deg]}", ("pose", "heading_deg"), 30),
+            ("level: {over_seabed: 9 dB}", "level.over_seabed: {uniform: [12 dB, 14 dB]}", ("level", "asked_db"), 9),
+            ("burial: 2 cm", "burial.fraction: {uniform: [0.5, 0.6]}", ("burial_m",), 0.02)):
+        draw = f'draw={{"objects[].{drawn.replace(": {", chr(34) + ": {", 1)}}}'
+        if design == "grid":
+            draw = draw.replace("]}", "], steps: 100}")  # more steps than images, if they counted
+        done = command("campaign", "campaign.yaml", "-o", f"{design} {key[0]}", "--set", "images=4", "--set", "empty=0",
+                       "--set", "clutter.alone=0", "--set", "clutter.number=0", "--set", f"design={design}", "--set", draw,
+                       "--set", f"targets=[{{class: box, object: {{shape: box, length: 40 cm, width: 30 cm, height: 20 cm, {fixed}}}}}]")
+        assert done.returncode == 0, done.stderr
+        truths = list((ground / f"{design} {key[0]}").glob("*/truth/*.json"))
+        assert len(truths) == 4
+        for path in truths:
+            told = json.loads(path.read_text())["objects"][0]
+            for part in key:
+                told = told[part]
+            assert told == pytest.approx(value)
+
+
 @pytest.mark.parametrize("old, new, where, what", [
     ("20,", "20 stone,", "bodies.csv:4:21: objects[0].height", "'stone cm' is not one of"),
     ("width,", "widht,", "bodies.csv:2:18: widht", "did you mean 'width'?"),
