@@ -68,16 +68,22 @@ class SignalBridge:
         except BaseException as error:  # raised again for the caller of the library
             self.error = error
 
+    def _stand_before(self) -> None:
+        for number in self._NUMBERS:
+            handler = signal.getsignal(number)
+            if callable(handler):
+                self._handlers[number] = handler
+                try:
+                    signal.signal(number, self._called)
+                except ValueError:  # Python runs within a program whose main thread is another
+                    del self._handlers[number]
+
     @contextlib.contextmanager
     def keeping(self) -> Iterator[None]:
         """Stands before the handlers that are written in Python. Only the main thread may do so."""
         try:
             if threading.current_thread() is threading.main_thread():
-                for number in self._NUMBERS:
-                    handler = signal.getsignal(number)
-                    if callable(handler):
-                        self._handlers[number] = handler
-                        signal.signal(number, self._called)
+                self._stand_before()
             yield
         finally:
             for number, handler in self._handlers.items():

@@ -6,6 +6,8 @@ import math
 import os
 import pathlib
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -300,6 +302,30 @@ def test_what_the_handler_of_a_signal_raises_is_raised(make_scene, amplitude_pat
         sonject.inject(amplitude_patch, scene, progress=progress)
     assert told[-1] < 1
     assert signal.getsignal(signal.SIGTERM) == out_of_time
+
+
+ELSEWHERE = """\
+import _thread, time
+told = []
+
+def work():
+    try:
+        import threading  # takes this thread for the main one
+        import sonject
+        told.append(sonject.absorption("100 kHz", 12) > 0)
+    finally:
+        told.append(False)
+
+_thread.start_new_thread(work, ())
+while not told:
+    time.sleep(0.01)
+assert told[0]
+"""
+
+
+def test_another_programs_main_thread_keeps_its_handlers():
+    """Python may run within a program, in a thread where no handler can be set."""
+    subprocess.run([sys.executable, "-c", ELSEWHERE], check=True, timeout=60)
 
 
 def test_a_callback_cannot_use_its_context(amplitude_patch, make_scene):
