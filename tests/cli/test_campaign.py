@@ -91,6 +91,22 @@ def command(ground, environment):
     return run
 
 
+def sets(*settings):
+    return [part for text in settings for part in ("--set", text)]
+
+
+@pytest.fixture(scope="module")
+def made(ground, command):
+    """Makes a data set with other settings and returns its folder."""
+
+    def make(name, *settings):
+        done = command("campaign", "campaign.yaml", "-o", name, *sets(*settings))
+        assert done.returncode == 0, done.stderr
+        return ground / name
+
+    return make
+
+
 @pytest.fixture(scope="module")
 def whole(ground, command):
     """Makes the data set in one run and returns its folder."""
@@ -114,6 +130,30 @@ def records(folder):
 
 def of_image(record, kind, extension):
     return f"{record['split']}/{kind}/{record['id']:08d}{extension}"
+
+
+def truth_of(folder, record):
+    return json.loads((folder / of_image(record, "truth", ".json")).read_text())
+
+
+def picture_of(folder, record, kind="images"):
+    return read_png(folder / of_image(record, kind, ".png"))
+
+
+def cut_of(swath, record):
+    """Returns the part of the swath that the image shows."""
+    place = record["swath"]
+    return swath[place["row"] : place["row"] + place["rows"], place["column"] : place["column"] + place["columns"]]
+
+
+def drawn_of(record):
+    return dict(entry.split("=", 1) for entry in record["set"])
+
+
+def places_of(record):
+    """Returns the objects' rows and columns in the swath."""
+    return [(float(row), float(column)) for row, column in
+            re.findall(r'"row": ([^,]+), "column": ([^}]+)}', drawn_of(record)["objects"])]
 
 
 def test_every_image_has_its_files(whole):
@@ -178,14 +218,11 @@ def test_images_keep_away_from_contacts_and_draws_are_stratified(whole):
 def test_an_image_without_objects_is_the_swath(whole, ground):
     checked = 0
     for record in records(whole):
-        truth = json.loads((whole / of_image(record, "truth", ".json")).read_text())
-        if truth["objects"]:
+        if truth_of(whole, record)["objects"]:
             continue
-        place = record["swath"]
-        swath = read_png(ground / place["path"])
-        chip = swath[place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
-        assert numpy.array_equal(read_png(whole / of_image(record, "images", ".png")), chip)
-        assert not read_png(whole / of_image(record, "masks", ".png")).any()
+        chip = cut_of(read_png(ground / record["swath"]["path"]), record)
+        assert numpy.array_equal(picture_of(whole, record), chip)
+        assert not picture_of(whole, record, "masks").any()
         checked += 1
     assert checked == 2
 
@@ -193,12 +230,8 @@ def test_an_image_without_objects_is_the_swath(whole, ground):
 def test_the_influence_is_all_that_differs_from_the_swath(whole, ground):
     """The influence has all changed pixels and all pixels of the masks."""
     for record in records(whole):
-        place = record["swath"]
-        influence = read_png(whole / of_image(record, "influence", ".png")) > 0
-        masks = read_png(whole / of_image(record, "masks", ".png")) > 0
-        chip = read_png(ground / place["path"])[place["row"] : place["row"] + CHIP,
-                                                place["column"] : place["column"] + CHIP]
-        changed = read_png(whole / of_image(record, "images", ".png")) != chip
+        influence, masks = (picture_of(whole, record, kind) > 0 for kind in ("influence", "masks"))
+        changed = picture_of(whole, record) != cut_of(read_png(ground / record["swath"]["path"]), record)
         assert not (changed & ~influence).any() and not (masks & ~influence).any()
         assert changed.sum() >= 0.5 * influence.sum()
         assert influence.any() == bool(record["annotations"])
@@ -256,11 +289,9 @@ def test_trainers_of_yolo_find_images_and_labels(whole):
     assert names == dict(enumerate([*TARGETS, "stone"]))
 
 
-def test_clutter_need_not_be_labelled(ground, command, whole):
+def test_clutter_need_not_be_labelled(made, whole):
     """Without labelled clutter there are only labels of targets. Truth, masks and the report's counts stay."""
-    done = command("campaign", "campaign.yaml", "-o", "unlabelled", "--set", "clutter.labelled=false")
-    assert done.returncode == 0, done.stderr
-    bare = ground / "unlabelled"
+    bare = made("unlabelled", "clutter.labelled=false")
     coco, every = (json.loads((folder / "train" / "coco.json").read_text()) for folder in (bare, whole))
     assert [each["name"] for each in coco["categories"]] == TARGETS
     told = [[(each["image_id"], each["object_id"], each["bbox"]) for each in document["annotations"]
@@ -280,29 +311,24 @@ def test_clutter_need_not_be_labelled(ground, command, whole):
 @pytest.mark.parametrize("splits, train, val, test", [
     ("test: 0.2, learn: 0.8", "learn", "learn", "test"), ("validation: 0.2, a: 0.6, test: 0.2", "a", "validation", "test"),
     ("val: 0.5, test: 0.5", "val", "val", "test"), ("a: 0.5, test: 0.2, b: 0.3", "a", "b", "test")])
-def test_trainers_of_yolo_learn_from_no_test(ground, command, splits, train, val, test):
-    name = splits.replace(": ", "").replace(", ", "")
-    done = command("campaign", "campaign.yaml", "-o", name, "--set", f"splits={{{splits}}}", "--set", "images=5",
-                   "--set", "chip={rows: 16, columns: 16}")
-    assert done.returncode == 0, done.stderr
-    assert f"\ntrain: {train}/images\nval: {val}/images\ntest: {test}/images\n" in (
-        ground / name / "data.yaml").read_text()
+def test_trainers_of_yolo_learn_from_no_test(made, splits, train, val, test):
+    folder = made(splits.replace(": ", "").replace(", ", ""), f"splits={{{splits}}}", "images=5", "chip={rows: 16, columns: 16}")
+    assert f"\ntrain: {train}/images\nval: {val}/images\ntest: {test}/images\n" in (folder / "data.yaml").read_text()
 
 
 @pytest.mark.parametrize("splits, told", [("all: 1", "all"), ("train: 0.5, val: 0.5", None), ("train: 0.5, test: 0.5", "train")])
-def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(ground, command, splits, told):
-    done = command("campaign", "campaign.yaml", "-o", f"validates_{told}", "--set", f"splits={{{splits}}}", "--set", "images=2",
-                   "--set", "chip={rows: 16, columns: 16}", "--verbose")
+def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(command, splits, told):
+    done = command("campaign", "campaign.yaml", "-o", f"validates_{told}", "--verbose", *sets(
+        f"splits={{{splits}}}", "images=2", "chip={rows: 16, columns: 16}"))
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stderr.splitlines() if "validation" in line]
     uses = f"{told}/images also for validation" if told else ""
     assert len(notes) == (told is not None) and all(uses in note for note in notes)
 
 
-def test_images_that_cut_what_they_show_are_noted(ground, command):
+def test_images_that_cut_what_they_show_are_noted(command):
     """One of 10 images of 64 columns cuts its shadow, which `whole` does not note. With 16 columns most images do."""
-    done = command("campaign", "campaign.yaml", "-o", "narrow", "--set", "empty=0", "--set", "images=4",
-                   "--set", "chip={rows: 64, columns: 16}")
+    done = command("campaign", "campaign.yaml", "-o", "narrow", *sets("empty=0", "images=4", "chip={rows: 64, columns: 16}"))
     assert done.returncode == 0, done.stderr
     cut = int(re.search(r"note: (\d) of 4 images have an object whose highlight or shadow is cut by the image's edge", done.stderr)[1])
     assert cut > 1
@@ -331,34 +357,28 @@ def test_croissant_lists_files_and_records(whole):
         *enumerate([*TARGETS, "stone"], 1)]  # numbers as in COCO
 
 
-def test_images_without_targets_come_as_often_as_asked(ground, command):
+def test_images_without_targets_come_as_often_as_asked(made):
     """The shares hold in each split, and the report shows them. Clutter without a target is at least one object."""
-    done = command("campaign", "campaign.yaml", "-o", "shares", "--set", "images=20", "--set", "empty=0.1", "--set",
-                   "clutter.alone=0.3", "--set", "clutter.number=0", "--set", "outputs=[]", "--set", "labels=[yolo]",
-                   "--set", "targets[0].class=155")
-    assert done.returncode == 0, done.stderr
+    folder = made("shares", "images=20", "empty=0.1", "clutter.alone=0.3", "clutter.number=0", "outputs=[]", "labels=[yolo]",
+                  "targets[0].class=155")
     for split in ("train", "test"):
-        mine = [record for record in records(ground / "shares") if record["split"] == split]
-        objects = [len(json.loads((ground / "shares" / of_image(record, "truth", ".json")).read_text())["objects"])
-                   for record in mine if record["target"] is None]
+        mine = [record for record in records(folder) if record["split"] == split]
+        objects = [len(truth_of(folder, record)["objects"]) for record in mine if record["target"] is None]
         assert len(mine) == 10 and sorted(objects) == [0, 1, 1, 1]
-    page = page_data(ground / "shares")
+    page = page_data(folder)
     assert (page["images"], page["empty"], page["clutter_alone"]) == (20, 0.1, 0.3)
     assert [[split[key] for key in ("name", "images", "empty", "clutter_alone")] for split in page["splits"]] == [
         ["train", 10, 1, 3], ["test", 10, 1, 3]]
-    assert '  0: "155"\n' in (ground / "shares" / "data.yaml").read_text()  # a name, not a number
+    assert '  0: "155"\n' in (folder / "data.yaml").read_text()  # a name, not a number
 
 
-def test_the_report_counts_what_is_not_seen(ground, command):
+def test_the_report_counts_what_is_not_seen(made):
     """The report counts as many unseen objects as the images' truth."""
-    done = command("campaign", "campaign.yaml", "-o", "unseen", "--set", "outputs=[]", "--set", "labels=[]", "--set",
-                   "targets=[{class: ball, object: {shape: sphere, diameter: 5 cm, burial: {proud: 3 mm}, level: {over_seabed: -30 dB}}}]",
-                   "--set", "draw={seabed.lambert: {uniform: [-30 dB, -24 dB]}}", "--set", "clutter.number=1")
-    assert done.returncode == 0, done.stderr
-    truths = [json.loads(path.read_text()) for path in (ground / "unseen").glob("*/truth/*.json")]
-    seen = [each["visible"] for truth in truths for each in truth["objects"]]
+    folder = made("unseen", "outputs=[]", "labels=[]", "clutter.number=1", "draw={seabed.lambert: {uniform: [-30 dB, -24 dB]}}",
+                  "targets=[{class: ball, object: {shape: sphere, diameter: 5 cm, burial: {proud: 3 mm}, level: {over_seabed: -30 dB}}}]")
+    seen = [each["visible"] for record in records(folder) for each in truth_of(folder, record)["objects"]]
     unseen = seen.count(False)
-    assert 0 < unseen != sum(seen) and page_data(ground / "unseen")["unseen"] == unseen
+    assert 0 < unseen != sum(seen) and page_data(folder)["unseen"] == unseen
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -378,14 +398,10 @@ def test_one_image_alone_is_the_same(command, whole, ground):
 
 def test_the_record_of_an_image_is_a_run(command, whole, ground):
     record = next(each for each in records(whole) if each["target"] == TARGETS[1])
-    place = record["swath"]
-    settings = [part for text in record["set"] for part in ("--set", text)]
-    other = next(f"swath{i}.png" for i in range(3) if place["path"] != f"swath{i}.png")
-    answer = command("run", "scene.yaml", "-o", "run", "--set", f"input.path={other}", *settings)
+    other = next(f"swath{i}.png" for i in range(3) if record["swath"]["path"] != f"swath{i}.png")
+    answer = command("run", "scene.yaml", "-o", "run", *sets(f"input.path={other}", *record["set"]))
     assert answer.returncode == 0, answer.stderr
-    chip = read_png(ground / "run" / "image.png")[
-        place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
-    assert numpy.array_equal(chip, read_png(whole / of_image(record, "images", ".png")))
+    assert numpy.array_equal(cut_of(read_png(ground / "run" / "image.png"), record), picture_of(whole, record))
 
 
 def test_what_a_chip_cuts_goes_on_in_its_swath(whole, ground):
@@ -393,7 +409,7 @@ def test_what_a_chip_cuts_goes_on_in_its_swath(whole, ground):
     for record in records(whole):
         place = record["swath"]
         end = read_png(ground / place["path"]).shape
-        for thing in json.loads((whole / of_image(record, "truth", ".json")).read_text())["objects"]:
+        for thing in truth_of(whole, record)["objects"]:
             box = thing["shadow"]
             if not thing["shadow_cut"]:
                 continue
@@ -548,7 +564,7 @@ def test_another_campaign_is_refused_by_name(command, whole, ground, setting, di
 def test_another_campaign_leaves_nothing_behind_once_it_is_overwritten(command, whole, ground):
     folder = ground / "replaced"
     shutil.copytree(whole, folder)
-    changes = ["--set", "images=4", "--set", "splits={all: 1}", "--set", "labels=[voc]"]
+    changes = sets("images=4", "splits={all: 1}", "labels=[voc]")
     assert command("campaign", "campaign.yaml", "-o", "fresh", *changes).returncode == 0
     replace = ["campaign", "campaign.yaml", "-o", "replaced", *changes, "--overwrite"]
     assert_refused(command(*replace, "--shard", "1/2"), 2, "--only 0 --overwrite")
@@ -662,18 +678,15 @@ RING = ('targets=[{class: ring, object: {shape: torus}, draw: {diameter: {unifor
         'height: {uniform: [0.1 m, %s]}}}]')
 
 
-def test_values_that_do_not_go_together_are_drawn_anew(ground, command):
+def test_values_that_do_not_go_together_are_drawn_anew(ground, command, made):
     """A torus must be more than twice as wide as it is high. A third of these draws is not, and the
     largest width and height do not go together either."""
-    settings = ["--set", RING % "0.5 m", "--set", "empty=0", "--set", "images=12"]
-    done = command("campaign", "campaign.yaml", "-o", "anew", *settings)
-    assert done.returncode == 0, done.stderr
-    found = records(ground / "anew")
+    settings = [RING % "0.5 m", "empty=0", "images=12"]
+    found = records(made("anew", *settings))
     anew = [record for record in found if "drawn_anew" in record]
     assert len(found) == 12 and 1 <= len(anew) <= 10
     for record in found:
-        drawn = dict(entry.split("=", 1) for entry in record["set"])
-        diameter, height = (float(drawn[f"objects[0].{key}"].split()[0]) for key in ("diameter", "height"))
+        diameter, height = (float(drawn_of(record)[f"objects[0].{key}"].split()[0]) for key in ("diameter", "height"))
         assert diameter > 2 * height
     for record in anew:
         assert record["drawn_anew"]["times"] >= 1
@@ -682,7 +695,7 @@ def test_values_that_do_not_go_together_are_drawn_anew(ground, command):
     assert page["drawn_anew"] == len(anew)
     assert {id: because for id, _, _, because, *_ in page["rows"] if because} == {
         record["id"]: record["drawn_anew"]["because"] for record in anew}
-    only = command("campaign", "campaign.yaml", "-o", "one", "--only", anew[0]["id"], *settings)
+    only = command("campaign", "campaign.yaml", "-o", "one", "--only", anew[0]["id"], *sets(*settings))
     assert only.returncode == 0, only.stderr
     name = of_image(anew[0], "records", ".json")
     assert (ground / "one" / name).read_bytes() == (ground / "anew" / name).read_bytes()
@@ -695,18 +708,14 @@ def test_what_can_never_be_drawn_is_refused_before_the_first_image(command, grou
     assert not (ground / "never").exists()
 
 
-FAINT = ["--set", "targets=[{class: ball, object: {shape: sphere, diameter: 0.3 m}, "
-         "draw: {level.over_seabed: {uniform: [0 dB, 30 dB]}}}]", "--set", "empty=0", "--set", "images=12",
-         "--set", "clutter={objects: [{class: stone, object: {shape: sphere, diameter: 0.2 m}}], number: 0}"]
+FAINT = ["targets=[{class: ball, object: {shape: sphere, diameter: 0.3 m}, draw: {level.over_seabed: {uniform: [0 dB, 30 dB]}}}]",
+         "clutter={objects: [{class: stone, object: {shape: sphere, diameter: 0.2 m}}], number: 0}", "empty=0", "images=12"]
 
 
-def test_a_place_where_no_target_is_seen_is_left_after_eight_draws(ground, command):
+def test_a_place_where_no_target_is_seen_is_left_after_eight_draws(made):
     places = {}
     for name, visible in ("all", "shadow: 60 dB"), ("some", "highlight: 6 dB"), ("none", "shadow: -60 dB"):
-        done = command("campaign", "campaign.yaml", "-o", name, *FAINT, "--set", "images=6",
-                       "--set", f"visible={{{visible}}}")
-        assert done.returncode == 0, done.stderr
-        for record in records(ground / name):
+        for record in records(made(name, *FAINT, "images=6", f"visible={{{visible}}}")):
             times = record.get("drawn_anew", {"times": 0})["times"]
             places.setdefault(record["id"], []).append((times, *(record["swath"][key] for key in ("path", "row", "column"))))
     assert len(places) == 6
@@ -718,27 +727,31 @@ def test_a_place_where_no_target_is_seen_is_left_after_eight_draws(ground, comma
             assert place[0] == first[0] and (place == first) == (times < 8)
 
 
+VISIBLE = "visible={highlight: 6 dB, shadow: -1 dB, otherwise: %s}"
+
+
+def stands_out(truth):
+    return (truth["highlight_visibility_db"] or -99) >= 6 and (truth["shadow_visibility_db"] or 99) <= -1
+
+
 @pytest.mark.parametrize("otherwise", ["difficult", "redraw"])
-def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
+def test_targets_are_seen_as_they_are_to_be(made, otherwise):
     """Targets that are seen too little are drawn anew, or they alone are marked difficult."""
-    visible = f"visible={{highlight: 6 dB, shadow: -1 dB, otherwise: {otherwise}}}"
-    done = command("campaign", "campaign.yaml", "-o", otherwise, "--set", visible, *FAINT)
-    assert done.returncode == 0, done.stderr
-    found = records(ground / otherwise)
+    folder = made(otherwise, VISIBLE % otherwise, *FAINT)
+    found = records(folder)
     faint = []
     clipped = 0
     for record in found:
-        (truth,) = json.loads((ground / otherwise / of_image(record, "truth", ".json")).read_text())["objects"]
+        (truth,) = truth_of(folder, record)["objects"]
         clipped += (truth["highlight_clipped"] or 0) > 0.1
-        is_seen = ((truth["highlight_visibility_db"] or -99) >= 6
-                   and (truth["shadow_visibility_db"] or 99) <= -1)
+        is_seen = stands_out(truth)
         for annotation in record["annotations"]:
             assert annotation.get("difficult", False) == (not is_seen)
-        text = (ground / otherwise / of_image(record, "voc", ".xml")).read_text()
+        text = (folder / of_image(record, "voc", ".xml")).read_text()
         assert ("<difficult>1</difficult>" in text) == (not is_seen and bool(record["annotations"]))
         faint += [record["id"]] * (not is_seen)
     anew = [record["drawn_anew"]["because"] for record in found if "drawn_anew" in record]
-    page = page_data(ground / otherwise)
+    page = page_data(folder)
     marked = [each for record in found for each in record["annotations"] if each.get("difficult")]
     assert page["clipped"] == clipped > 0 and page["difficult"] == len(marked) and page["drawn_anew"] == len(anew)
     if otherwise == "difficult":
@@ -749,42 +762,34 @@ def test_targets_are_seen_as_they_are_to_be(ground, command, otherwise):
 
 @pytest.mark.parametrize("settings, rows, columns", [
     (["chip.rows=all", "chip.columns=all"], ROWS, COLUMNS), (["chip.columns=all", "chip.edge=3"], CHIP, COLUMNS - 6)])
-def test_images_may_be_whole_swaths_with_several_targets(ground, command, settings, rows, columns):
+def test_images_may_be_whole_swaths_with_several_targets(made, settings, rows, columns):
     """Targets keep away from contacts and from the water column, here 40 columns wide."""
-    name = f"all{rows}"
-    done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
-        *settings, "targets_per_image={choice: [3, 5]}", "chip.spread=1", "empty=0.1",
-        "swaths[0].set={input.geometry.first_slant_range: 9 m}", "swaths[1].set={input.geometry.first_slant_range: 9 m}",
-        "swaths[2].set={input.geometry.first_slant_range: 9 m}"] for part in ("--set", text)])
-    assert done.returncode == 0, done.stderr
+    folder = made(f"all{rows}", *settings, "targets_per_image={choice: [3, 5]}", "chip.spread=1", "empty=0.1", *(
+        f"swaths[{i}].set={{input.geometry.first_slant_range: 9 m}}" for i in range(3)))
     counts = []
-    for record in records(ground / name):
+    for record in records(folder):
         place = record["swath"]
-        assert (place["rows"], place["columns"]) == (rows, columns)
-        image = read_png(ground / name / of_image(record, "images", ".png"))
-        assert image.shape == (rows, columns)
-        objects = json.loads((ground / name / of_image(record, "truth", ".json")).read_text())["objects"]
+        assert (place["rows"], place["columns"]) == picture_of(folder, record).shape == (rows, columns)
+        objects = truth_of(folder, record)["objects"]
         counts.append(record["targets"])
         assert [each["class"] in TARGETS for each in objects] == [
             *[True] * record["targets"], *[False] * (len(objects) - record["targets"])]
-        (drawn,) = [entry for entry in record["set"] if entry.startswith("objects=")]
-        places = re.findall(r'"row": ([^,]+), "column": ([^}]+)}', drawn)
+        places = places_of(record)
         assert len(places) == len(objects)
-        for row, column in [map(float, each) for each in places]:
+        for row, column in places:
             assert 40 <= column <= COLUMNS - 1 and place["row"] <= row <= place["row"] + rows - 1
             assert place["path"] != "swath0.png" or row >= 22 or column <= 78
     assert set(counts) == {0, 3, 5}
-    coco = json.loads((ground / name / "train" / "coco.json").read_text())
+    coco = json.loads((folder / "train" / "coco.json").read_text())
     assert {(each["height"], each["width"]) for each in coco["images"]} == {(rows, columns)}
-    assert json.loads((ground / name / "campaign.json").read_text())["columns"] == "all"
+    assert json.loads((folder / "campaign.json").read_text())["columns"] == "all"
 
 
 def test_images_with_a_contact_across_the_line_lie_where_objects_may(ground, command):
-    settings = ["--set", "chip.columns=all", "--set", "empty=0",
-                "--set", f"swaths[0].avoid=[{{row: 0, column: 0, rows: 60, columns: {COLUMNS}}}]"]
+    settings = sets("chip.columns=all", "empty=0", f"swaths[0].avoid=[{{row: 0, column: 0, rows: 60, columns: {COLUMNS}}}]")
     done = command("campaign", "campaign.yaml", "-o", "across", *settings)
     assert done.returncode == 0 and "note" not in done.stderr, done.stderr
-    near = command("campaign", "campaign.yaml", "-o", "near", *settings, "--set", "chip.clearance=0", "--set", "images=3")
+    near = command("campaign", "campaign.yaml", "-o", "near", *settings, *sets("chip.clearance=0", "images=3"))
     assert near.returncode == 0 and near.stderr.count("note: chip.clearance is 0") == 1
     first = [record["swath"]["row"] for record in records(ground / "across")
              if record["swath"]["path"] == "swath0.png"]
@@ -792,23 +797,18 @@ def test_images_with_a_contact_across_the_line_lie_where_objects_may(ground, com
     assert first and min(first) >= 18
 
 
-def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command):
+def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(made):
     """If faint targets are not drawn anew, they alone are difficult. All other targets stay in place."""
-    visible = "visible={highlight: 6 dB, shadow: -1 dB, otherwise: %s}"
     levels, are_seen, places = {}, {}, {}
     for otherwise in ("difficult", "redraw"):
-        done = command("campaign", "campaign.yaml", "-o", f"two_{otherwise}", "--set", visible % otherwise, *FAINT,
-                       "--set", "targets_per_image=3", "--set", "chip.spread=0.6")
-        assert done.returncode == 0, done.stderr
-        for record in records(ground / f"two_{otherwise}"):
-            truths = json.loads((ground / f"two_{otherwise}" / of_image(record, "truth", ".json")).read_text())["objects"]
+        folder = made(f"two_{otherwise}", VISIBLE % otherwise, *FAINT, "targets_per_image=3", "chip.spread=0.6")
+        for record in records(folder):
+            truths = truth_of(folder, record)["objects"]
             assert len(truths) == record["targets"] == 3
             key = otherwise, record["id"]
-            are_seen[key] = [(each["highlight_visibility_db"] or -99) >= 6 and (each["shadow_visibility_db"] or 99) <= -1
-                             for each in truths]
-            levels[key] = [entry.split("=")[1] for entry in record["set"] if "over_seabed" in entry]
-            (drawn,) = [entry for entry in record["set"] if entry.startswith("objects=")]
-            places[key] = re.findall(r'"position": {([^}]+)}', drawn)
+            are_seen[key] = [stands_out(each) for each in truths]
+            levels[key] = [value for name, value in drawn_of(record).items() if "over_seabed" in name]
+            places[key] = places_of(record)
             for each in record["annotations"]:
                 assert each.get("difficult", False) != are_seen[key][each["object_id"] - 1]
     first, last = ([[each[otherwise, i] for i in range(12)] for each in (levels, are_seen)]
@@ -822,16 +822,12 @@ def test_of_several_targets_the_faint_ones_alone_are_drawn_anew(ground, command)
     assert stayed == kept
 
 
-def test_objects_may_lie_at_the_border(ground, command):
+def test_objects_may_lie_at_the_border(made):
     """Boxes are cut at the border and marked as truncated."""
-    done = command("campaign", "campaign.yaml", "-o", "border", "--set", "chip.spread=1", "--set", "images=24")
-    assert done.returncode == 0, done.stderr
     cut = 0
     places = []
-    for record in records(ground / "border"):
-        (drawn,) = [entry for entry in record["set"] if entry.startswith("objects=")]
-        places += [(float(row) - record["swath"]["row"], float(column) - record["swath"]["column"])
-                   for row, column in re.findall(r'"row": ([^,]+), "column": ([^}]+)}', drawn)]
+    for record in records(made("border", "chip.spread=1", "images=24")):
+        places += [(row - record["swath"]["row"], column - record["swath"]["column"]) for row, column in places_of(record)]
         for each in record["annotations"]:
             column, row, columns, rows = each["bbox"]
             assert 0 <= column and 0 <= row and column + columns <= CHIP and row + rows <= CHIP
@@ -855,7 +851,7 @@ def coded_shares(image, blocks, table):
 
 
 @pytest.mark.parametrize("quality", [40, 75])
-def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
+def test_images_of_a_jpeg_are_coded_as_it_is(ground, made, quality):
     """Injected blocks are coded like the input's, so only the target betrays them. Other blocks survive the second coding
     unchanged. In lossless images, injected blocks were never coded."""
     pillow = pytest.importorskip("PIL.Image")
@@ -868,19 +864,16 @@ def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
     table = numpy.reshape(pillow.open(source).quantization[0], (8, 8))
     shares = {}
     for form in ("as_input", "lossless"):
-        name = f"{form}{quality}"
-        done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
-            f"format={form}", f"swaths=[{{path: {source.name}, avoid: [{{row: 0, column: 100, rows: 9, columns: 50}}], "
-            "set: {input.transfer: {kind: decibel, parameter: 0.25}}}]",
-            "splits={all: 1}", "outputs=[influence]", "images=8", "chip.edge=3"] for part in ("--set", text)])
-        assert done.returncode == 0, done.stderr
+        folder = made(f"{form}{quality}", f"format={form}", "splits={all: 1}", "outputs=[influence]", "images=8", "chip.edge=3",
+                      f"swaths=[{{path: {source.name}, avoid: [{{row: 0, column: 100, rows: 9, columns: 50}}], "
+                      "set: {input.transfer: {kind: decibel, parameter: 0.25}}}]")
         found = {"input": [], "injected": [], "left": []}
-        for record in records(ground / name):
+        for record in records(folder):
             place = record["swath"]
-            image = numpy.array(pillow.open(ground / name / record["split"] / record["image"])).astype(float)
-            influence = numpy.array(pillow.open(ground / name / of_image(record, "influence", ".png"))) > 0
-            before = swath[place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
-            truth = json.loads((ground / name / of_image(record, "truth", ".json")).read_text())
+            image = numpy.array(pillow.open(folder / record["split"] / record["image"])).astype(float)
+            influence = picture_of(folder, record, "influence") > 0
+            before = cut_of(swath, record)
+            truth = truth_of(folder, record)
             if form == "lossless":
                 assert record["image"].endswith(".png") and "jpeg_quality" not in truth
             else:
@@ -914,30 +907,24 @@ def test_images_of_a_jpeg_are_coded_as_it_is(ground, command, quality):
     (["chip.rows=all", "chip.columns=all", "swaths[0].set={input.geometry.nadir_column: 100, input.geometry.side: starboard, "
       "input.geometry.first_slant_range: 0 m, sonar.altitude: 0.5 m}"],
      {"row": 8, "rows": 200 - 3 - 8, "column": 104, "columns": 240 - 3 - 104})])
-def test_images_of_all_of_a_jpeg_begin_where_its_blocks_do(ground, command, settings, place):
+def test_images_of_all_of_a_jpeg_begin_where_its_blocks_do(ground, made, settings, place):
     pillow = pytest.importorskip("PIL.Image")
     levels = numpy.random.default_rng(20261127).rayleigh(40, (200, 240))
     pillow.fromarray(levels.clip(1, 255).astype("u1")).save(ground / "lines.jpg", quality=60)
-    name = f"lines{len(settings)}"
-    done = command("campaign", "campaign.yaml", "-o", name, *[part for text in [
-        "format=as_input", "swaths=[{path: lines.jpg}]", "splits={all: 1}", "images=2", "chip.edge=3", *settings]
-        for part in ("--set", text)])
-    assert done.returncode == 0, done.stderr
-    for record in records(ground / name):
+    folder = made(f"lines{len(settings)}", "format=as_input", "swaths=[{path: lines.jpg}]", "splits={all: 1}", "images=2",
+                  "chip.edge=3", *settings)
+    for record in records(folder):
         assert record["swath"]["row"] % 8 == 0 and place.items() <= record["swath"].items()
-        image = numpy.array(pillow.open(ground / name / record["split"] / record["image"]))
+        image = numpy.array(pillow.open(folder / record["split"] / record["image"]))
         assert image.shape == (record["swath"]["rows"], record["swath"]["columns"])
 
 
-def test_a_value_may_be_a_ratio_of_another(ground, command):
+def test_a_value_may_be_a_ratio_of_another(made):
     """The value takes the other one's unit. A ratio may refer to a ratio."""
     body = ("targets=[{class: box, object: {shape: box}, draw: {length: {uniform: [40 cm, 80 cm]}, "
             "width: {of: length, uniform: [0.3, 0.6]}, height: {of: width, log_uniform: [0.5, 1]}}}]")
-    done = command("campaign", "campaign.yaml", "-o", "ratio", "--set", body, "--set", "empty=0")
-    assert done.returncode == 0, done.stderr
-    for record in records(ground / "ratio"):
-        drawn = dict(entry.split("=", 1) for entry in record["set"])
-        length, width, height = (drawn[f"objects[0].{key}"].split() for key in ("length", "width", "height"))
+    for record in records(made("ratio", body, "empty=0")):
+        length, width, height = (drawn_of(record)[f"objects[0].{key}"].split() for key in ("length", "width", "height"))
         assert length[1] == width[1] == height[1] == "cm"
         assert 0.3 <= float(width[0]) / float(length[0]) <= 0.6
         assert 0.5 <= float(height[0]) / float(width[0]) <= 1
@@ -950,32 +937,29 @@ box,0.6,40 cm,30,,1
 ellipsoid,0.5,0.3 m,20,30 deg,2
 wedge,0.8,0.5 m,,,1 # its height is the object's
 """
-TABLE = ["--set", "targets=[{class: body, object: {height: 25 cm}, draw: {table: {file: bodies.csv, weight: count}, "
-         "burial: {of: length, uniform: [0.01, 0.05]}}}]", "--set", "empty=0", "--set", "clutter.alone=0",
-         "--set", "images=8", "--set", "splits={all: 1}", "--set", "clutter.number=0", "--set", "outputs=[]"]
+TABLE = ["targets=[{class: body, object: {height: 25 cm}, draw: {table: {file: bodies.csv, weight: count}, "
+         "burial: {of: length, uniform: [0.01, 0.05]}}}]",
+         "empty=0", "clutter.alone=0", "images=8", "splits={all: 1}", "clutter.number=0", "outputs=[]"]
 
 
-def test_a_row_of_a_table_is_drawn_whole(ground, command):
+def test_a_row_of_a_table_is_drawn_whole(ground, command, made):
     """A row is drawn as often as its weight says. Empty cells keep the object's values. Columns replace common draws."""
     (ground / "bodies.csv").write_text(BODIES)
-    common = ["--set", 'draw={"objects[].heading": 77 deg}']
-    done = command("campaign", "campaign.yaml", "-o", "bodies", *TABLE, *common)
-    assert done.returncode == 0, done.stderr
+    settings = [*TABLE, 'draw={"objects[].heading": 77 deg}']
     rows = {"box": {"shape": "box", "length": "0.6 m", "width": "40 cm", "height": "30 cm"},
             "ellipsoid": {"shape": "ellipsoid", "length": "0.5 m", "width": "0.3 m", "height": "20 cm",
                           "heading": "30 deg"},
             "wedge": {"shape": "wedge", "length": "0.8 m", "width": "0.5 m"}}
     shapes = []
-    for record in records(ground / "bodies"):
-        drawn = dict(entry.split("=", 1) for entry in record["set"])
-        mine = {key[11:]: value for key, value in drawn.items() if key.startswith("objects[0].")}
+    for record in records(made("bodies", *settings)):
+        mine = {key[11:]: value for key, value in drawn_of(record).items() if key.startswith("objects[0].")}
         burial = mine.pop("burial").split()
         assert mine == rows[mine["shape"]]
         assert burial[1] == "m" and 0.01 <= float(burial[0]) / float(mine["length"].split()[0]) <= 0.05
         shapes.append(mine["shape"])
     assert {shape: shapes.count(shape) for shape in rows} == {"box": 2, "ellipsoid": 4, "wedge": 2}
     (ground / "bodies.csv").write_text(BODIES.replace("0.8", "0.9"))
-    answer = command("campaign", "campaign.yaml", "-o", "bodies", *TABLE, *common)
+    answer = command("campaign", "campaign.yaml", "-o", "bodies", *sets(*settings))
     assert_refused(answer, 2, "differs in the table of targets[0]")
 
 
@@ -1019,7 +1003,7 @@ def test_mistakes_of_tables_have_a_place(ground, command, old, new, where, what)
     assert BODIES.count(old) == 1
     (ground / "bodies.csv").write_text(BODIES.replace(old, new))
     settings = [text.replace(", weight: count", "") if new == "length\n" else text for text in TABLE]
-    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *settings), 3, where, what)
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *sets(*settings)), 3, where, what)
     assert not (ground / "hostile").exists()
 
 
@@ -1031,32 +1015,23 @@ def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whol
     assert contents(ground / "twice") == contents(whole)
 
 
+SMALL = ["images=8", "chip.rows=32", "chip.columns=32", "outputs=[]", "empty=0", "targets[0].weight=0", "splits={all: 1}"]
+
+
 def test_a_grid_draws_every_cell(command, ground):
-    settings = {
-        "design": "grid", "images": 8, "chip.rows": 32, "chip.columns": 32, "outputs": "[]",
-        "empty": 0, "targets[0].weight": 0, "splits": "{all: 1}",
-        "draw": "{sonar.bandwidth: {choice: [30 kHz, 29 kHz]}}",
-        "targets[1].draw.heading": "{uniform: [0 deg, 90 deg], steps: 4}",
-    }
-    changes = [part for pair in settings.items() for part in ("--set", "=".join(map(str, pair)))]
-    assert command("campaign", "campaign.yaml", "-o", "grid", *changes, "--shard",
-                   "1/1").returncode == 0
-    drawn = [dict(text.split("=", 1) for text in record["set"]) for record in records(ground / "grid")]
+    settings = sets(*SMALL, "design=grid", "draw={sonar.bandwidth: {choice: [30 kHz, 29 kHz]}}",
+                    "targets[1].draw.heading={uniform: [0 deg, 90 deg], steps: 4}")
+    assert command("campaign", "campaign.yaml", "-o", "grid", *settings, "--shard", "1/1").returncode == 0
+    drawn = [drawn_of(record) for record in records(ground / "grid")]
     cells = {(each["sonar.bandwidth"], each["objects[0].heading"]) for each in drawn}
     assert cells == {(bandwidth, f"{heading} deg") for bandwidth in ("30 kHz", "29 kHz")
                      for heading in (0, 30, 60, 90)}
 
 
-def test_a_random_design_draws_each_key_by_itself(command, ground):
-    settings = ["design=random", "images=8", "chip.rows=32", "chip.columns=32", "outputs=[]",
-                "empty=0", "targets[0].weight=0", "splits={all: 1}",
-                "draw={sonar.altitude: {uniform: [10 m, 11 m]}, "
-                "seabed.lambert: {uniform: [-30 dB, -29 dB]}}"]
-    changes = [part for text in settings for part in ("--set", text)]
-    assert command("campaign", "campaign.yaml", "-o", "random", *changes, "--shard",
-                   "1/1").returncode == 0
-    drawn = [dict(text.split("=", 1) for text in record["set"])
-             for record in records(ground / "random")]
+def test_a_random_design_draws_each_key_by_itself(made):
+    drawn = [drawn_of(record) for record in records(made(
+        "random", *SMALL, "design=random",
+        "draw={sonar.altitude: {uniform: [10 m, 11 m]}, seabed.lambert: {uniform: [-30 dB, -29 dB]}}"))]
     shares = [(float(each["sonar.altitude"].split()[0]) - 10,
                float(each["seabed.lambert"].split()[0]) + 30) for each in drawn]
     assert all(abs(one - other) > 1e-4 for one, other in shares)
@@ -1103,10 +1078,8 @@ def test_starting_campaigns_run_as_they_say(ground, environment, start):
     assert targets.count(0) == 1  # the image that must be empty
     seabed = images.read_tiff(folder / "seabed.tif")
     for record in found:
-        truths = json.loads((data / of_image(record, "truth", ".json")).read_text())["objects"]
-        place = record["swath"]
-        cut = seabed[place["row"] : place["row"] + place["rows"], place["column"] : place["column"] + place["columns"]]
-        changed = images.read_tiff(data / of_image(record, "images", ".tif")) != cut
+        truths = truth_of(data, record)["objects"]
+        changed = images.read_tiff(data / of_image(record, "images", ".tif")) != cut_of(seabed, record)
         changed = changed.reshape(*changed.shape[:2], -1).any(axis=2)
         # a boulder in the shadow of another is not drawn anew, and has no label
         targets = [truth for truth in truths[: record["targets"]]
@@ -1167,8 +1140,7 @@ HOSTILE = [
 
 @pytest.mark.parametrize("changes, where, what", HOSTILE)
 def test_bad_campaigns_are_refused_with_a_line(command, ground, changes, where, what):
-    settings = [part for change in changes for part in ("--set", change)]
-    answer = command("campaign", "campaign.yaml", "-o", "hostile", *settings)
+    answer = command("campaign", "campaign.yaml", "-o", "hostile", *sets(*changes))
     assert_refused(answer, 3, where, what)
     assert not (ground / "hostile").exists()
 
@@ -1186,27 +1158,24 @@ def lines(ground):
 
 def of_line(name, one, other, *more):
     swaths = ", ".join(f"{{path: {name}, set: {{input.channel: {channel}}}}}" for channel in (one, other))
-    settings = ["scene=line.yaml", f"swaths=[{swaths}]", "images=6", "chip={rows: 48, columns: 48}", *more]
-    return [part for setting in settings for part in ("--set", setting)]
+    return ["scene=line.yaml", f"swaths=[{swaths}]", "images=6", "chip={rows: 48, columns: 48}", *more]
 
 
 @pytest.mark.parametrize("name, one, other", [("line.xtf", "port", "starboard"), ("line.jsf", 0, 3)])
-def test_the_sides_of_a_line_are_two_swaths(ground, command, lines, name, one, other):
-    folder = name.replace(".", "_")
-    answer = command("campaign", "campaign.yaml", "-o", folder, *of_line(name, one, other))
-    assert answer.returncode == 0, answer.stderr
-    channels = {split: {text for record in records(ground / folder) if record["split"] == split
+def test_the_sides_of_a_line_are_two_swaths(made, lines, name, one, other):
+    folder = made(name.replace(".", "_"), *of_line(name, one, other))
+    channels = {split: {text for record in records(folder) if record["split"] == split
                         for text in record["set"] if text.startswith("input.channel=")} for split in ("train", "test")}
     assert sorted(map(sorted, channels.values())) == [[f"input.channel={one}"], [f"input.channel={other}"]]
-    assert [swath["side"] for swath in page_data(ground / folder)["swaths"]] == ["port", "starboard"]
+    assert [swath["side"] for swath in page_data(folder)["swaths"]] == ["port", "starboard"]
 
 
 @pytest.mark.parametrize("name, one, other", [
     ("line.xtf", "port", "port"), ("line.xtf", "port", 1), ("line.jsf", 0, 2)])  # the same side, or its other frequency
 def test_a_side_of_a_line_is_in_no_two_splits(command, lines, name, one, other):
-    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *of_line(name, one, other)), 3,
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *sets(*of_line(name, one, other))), 3,
                    "1 different swaths are too few for 2 splits")
-    asked = of_line(name, one, other, "swaths[0].split=train", "swaths[1].split=test")
+    asked = sets(*of_line(name, one, other, "swaths[0].split=train", "swaths[1].split=test"))
     assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", *asked), 3, "shows the same seabed as line.", "split train")
 
 
