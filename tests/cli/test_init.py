@@ -25,9 +25,15 @@ def init(sonject, *arguments, answers):
     return sonject("init", *arguments, input="".join(f"{answer}\n" for answer in answers))
 
 
-def test_what_it_writes_runs(sonject, image):
-    answer = init(sonject, "swath.npy", answers=ANSWERS)
+def start(sonject, *arguments, answers=ANSWERS):
+    """Asserts that the answers make a scene."""
+    answer = init(sonject, *arguments, answers=answers)
     assert answer.returncode == 0, answer.stderr
+    return answer
+
+
+def test_what_it_writes_runs(sonject, image):
+    answer = start(sonject, "swath.npy")
     assert "object 1   cylinder (cylinder)" in answer.stdout
     scene = image.with_suffix(".yaml").read_text()
     for line in ('path: "swath.npy"', "row_spacing: 5 cm", "column_spacing: 2.5 cm", "first_slant_range: 44 m",
@@ -40,16 +46,14 @@ def test_what_it_writes_runs(sonject, image):
 
 
 def test_a_wrong_answer_is_asked_for_again(sonject, image):
-    answer = init(sonject, "swath.npy", answers=["", "5 xx", "-1 m", *ANSWERS])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "swath.npy", answers=["", "5 xx", "-1 m", *ANSWERS])
     assert "unit 'xx' is not one of m, km, cm, mm" in answer.stderr and "must be" in answer.stderr
     assert "row_spacing: 5 cm" in image.with_suffix(".yaml").read_text()
 
 
 def test_range_may_grow_to_the_left(sonject, image):
     """Shadows fall to the left, and the last column is the nearest."""
-    answer = init(sonject, "swath.npy", "--campaign", answers=["5 cm", "2.5 cm", "44 m left", *ANSWERS[3:]])
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.npy", "--campaign", answers=["5 cm", "2.5 cm", "44 m left", *ANSWERS[3:]])
     scene = image.with_suffix(".yaml").read_text()
     for line in ("first_slant_range: 44 m", f"nadir_column: {COLUMNS - 1}", "side: port"):
         assert f"    {line} # " in scene
@@ -63,8 +67,7 @@ def test_range_may_grow_to_the_left(sonject, image):
 def test_a_water_column_at_the_right_is_no_second_side(sonject, tmp_path):
     """The image shows one side, whose range grows to the left. Its last column is the nearest."""
     numpy.save(tmp_path / "left.npy", Made("amplitude", water=numpy.full(ROWS, 120)).numbers[:, ::-1])
-    answer = init(sonject, "left.npy", "--campaign", answers=["5 cm", "5 cm", "0 m left", "", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "left.npy", "--campaign", answers=["5 cm", "5 cm", "0 m left", "", "100 kHz", "30 kHz", ""])
     assert "side of the track" not in answer.stderr
     scene = (tmp_path / "left.yaml").read_text()
     for line in ("first_slant_range: 0 m", f"nadir_column: {COLUMNS - 1}", "side: port"):
@@ -75,8 +78,7 @@ def test_a_water_column_at_the_right_is_no_second_side(sonject, tmp_path):
 def test_a_nadir_that_was_not_found_can_be_answered(sonject, image):
     """The image shows no water column. Range grows to both sides of the column that is named."""
     answers = [*ANSWERS[:2], "foo left", f"nadir {COLUMNS}", "nadir x", f"nadir {COLUMNS // 3}.5", "port", "2 m", *ANSWERS[4:]]
-    answer = init(sonject, "swath.npy", "--campaign", answers=answers)
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "swath.npy", "--campaign", answers=answers)
     assert f"the answer 'nadir {COLUMNS}': the image has no columns" in answer.stderr and "the answer 'nadir x'" in answer.stderr
     scene = image.with_suffix(".yaml").read_text()
     for line in (f"nadir_column: {COLUMNS // 3}.5 # range grows to both sides", "side: port # of the nadir column"):
@@ -113,8 +115,7 @@ def test_a_file_that_is_there_stays(sonject, image):
 
 def test_an_array_makes_a_sidescan_and_the_scene_may_lie_elsewhere(sonject, image):
     (image.parent / "scenes").mkdir()
-    answer = init(sonject, "swath.npy", "-o", "scenes/mine.yaml", answers=[*ANSWERS[:-1], "0.5 m"])
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.npy", "-o", "scenes/mine.yaml", answers=[*ANSWERS[:-1], "0.5 m"])
     scene = (image.parent / "scenes" / "mine.yaml").read_text()
     assert "kind: real\n  array: {length: 0.5 m}" in scene and 'calibration: "mine_calibration.yaml"' in scene
     sonject.done("check", "scenes/mine.yaml")
@@ -124,8 +125,7 @@ def test_what_the_file_tells_is_not_asked_for(sonject, image):
     """The file tells a geometry without an altitude."""
     sonject.done("convert", "swath.npy", "swath.tif", "--row-spacing", "0.025", "--column-spacing", "0.025",
                  "--first-range", "44")
-    answer = init(sonject, "swath.tif", answers=ANSWERS[3:])
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.tif", answers=ANSWERS[3:])
     scene = image.with_suffix(".yaml").read_text()
     assert "geometry: from_file" in scene and "altitude: 10 m" in scene
 
@@ -134,8 +134,7 @@ def test_what_the_file_tells_is_not_asked_for(sonject, image):
 def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
     sides = [numpy.random.default_rng(7).rayleigh(2000.0, (120, 400)).astype(numpy.uint16) for _ in range(2)]
     (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.linspace(5.0, 9.0, 120)))
-    answer = init(sonject, "line.xtf", "--channel", "port", answers=[typed, "600 kHz", "", "0.5 m"])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "line.xtf", "--channel", "port", answers=[typed, "600 kHz", "", "0.5 m"])
     assert "(from_file: as recorded, 7 m in the mean; or a number) [from_file]: " in answer.stderr
     scene = (tmp_path / "line.yaml").read_text()
     assert "bandwidth: 10 kHz # c / 2 divided by the column spacing" in scene  # 400 columns reach 30 m
@@ -143,8 +142,7 @@ def test_a_recording_tells_the_geometry(sonject, tmp_path, typed):
 
 
 def test_an_answer_from_a_file_that_does_not_tell_it_is_asked_for_again(sonject, image):
-    answer = init(sonject, "swath.npy", answers=[*ANSWERS[:3], "from_file", *ANSWERS[3:5], "", ""])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "swath.npy", answers=[*ANSWERS[:3], "from_file", *ANSWERS[3:5], "", ""])
     assert "does not say the sonar's altitude: give it instead of from_file" in answer.stderr
     assert "bandwidth: 30 kHz # c / 2 divided by the column spacing" in image.with_suffix(".yaml").read_text()  # 2.5 cm
 
@@ -154,8 +152,7 @@ def test_the_level_is_a_little_over_the_ceiling(sonject, tmp_path, share, level)
     """The level is the calibration's ceiling in whole dB, and 2 dB more since the place is darker than most."""
     made = Made("amplitude")
     numpy.save(tmp_path / "swath.npy", numpy.minimum(made.numbers, round(share * made.ceiling)))
-    answer = init(sonject, "swath.npy", answers=ANSWERS)
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.npy")
     found = json.loads(sonject.done("calibrate", "swath.npy", "--json").stdout)["measured"]["ceiling_over_seabed"]
     mean = 20 * numpy.log10(KINDS["amplitude"][1] / share)  # the seabed's level over full scale, dB
     assert found["value"] == pytest.approx(-mean, abs=4 * found["standard_error"] + LEVEL_DB / 4)
@@ -167,8 +164,7 @@ def test_altitude_by_first_returns_is_what_enter_takes(sonject, tmp_path):
     numpy.save(tmp_path / "swath.npy", Made("amplitude", water=numpy.full(ROWS, 120)).numbers)
     sonject.done("convert", "swath.npy", "swath.tif", "--row-spacing", "0.025", "--column-spacing", "0.025",
                  "--first-range", "0")
-    answer = init(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "swath.tif", answers=["", "100 kHz", "", ""])
     shown = float(re.search(r"\(first_return: from the first return of each ping, (\S+) m in the median; or a number\) \[first_return\]", answer.stderr)[1])
     assert shown == pytest.approx(120 * 0.025, rel=0.02)
     assert "altitude: first_return" in (tmp_path / "swath.yaml").read_text()
@@ -184,19 +180,22 @@ def write_mesh(folder, side=400):
         "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
 
 
-def write_line(folder):
+ALTITUDE = 100 * 30 / COLUMNS  # m
+OF_PORT = ("line.xtf", "--channel", "port", "--campaign")
+PORT_ANSWERS = ["", "100 kHz", "30 kHz", ""]
+
+
+def write_line(folder, change=lambda made: made.numbers, **options):
     """Writes both sides of a recording, each with a water column."""
-    water = numpy.full(ROWS, 100)
-    sides = [Made("amplitude", water=water, seed=seed).numbers for seed in (1, 2)]
-    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
+    sides = [change(Made("amplitude", water=numpy.full(ROWS, 100), seed=seed)) for seed in (1, 2)]
+    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.full(ROWS, ALTITUDE), **options))
 
 
 def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
     write_mesh(tmp_path)
     write_line(tmp_path)
-    answer = init(sonject, "line.xtf", "--channel", "starboard", "--target", "rock.obj", "--campaign",
+    answer = start(sonject, "line.xtf", "--channel", "starboard", "--target", "rock.obj", "--campaign",
                   answers=["", "100 kHz", "30 kHz", "", "mm", "y"])
-    assert answer.returncode == 0, answer.stderr
     assert "object 1   rock (mesh)" in answer.stdout and "0.4 x 0.4 x 0.4 m" in answer.stdout
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         "line.xtf", "line.yaml", "line_calibration.yaml", "line_campaign.yaml", "line_port_calibration.yaml",
@@ -215,13 +214,9 @@ def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
 
 def test_a_line_where_nothing_clips_has_grey_levels_up_to_the_largest_number(sonject, tmp_path):
     random = numpy.random.default_rng(3)
-    water = numpy.full(ROWS, 100)
-    made = [Made("amplitude", water=water, seed=seed) for seed in (1, 2)]
-    sides = [numpy.where(side.numbers < side.ceiling, side.numbers, random.integers(20000, 50000, side.numbers.shape))
-             for side in made]
-    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=100 * 30 / COLUMNS * numpy.ones(ROWS)))
-    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
+    write_line(tmp_path, lambda made: numpy.where(
+        made.numbers < made.ceiling, made.numbers, random.integers(20000, 50000, made.numbers.shape)))
+    start(sonject, *OF_PORT, answers=PORT_ANSWERS)
     assert "  full_scale:\n    not_seen: " in (tmp_path / "line_calibration.yaml").read_text()
     grey = re.search(r"^grey: \[(-\d+) dB, 0 dB\] ", (tmp_path / "line_campaign.yaml").read_text(), flags=re.M)
     assert -70 < int(grey[1]) < -45  # 35 dB under the seabed
@@ -235,8 +230,7 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
     begin = [word.replace("my_mine.stl", "my_mine.obj") for word in begin]
-    answer = init(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over 0.25 degrees
     sonject.done(*run[1:])
     assert re.findall(r"line.xtf, (\w+): .* leave [1-9][0-9.]* % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
@@ -248,16 +242,15 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
 def test_chips_hold_a_shadow_on_either_side(sonject, tmp_path):
     """Either side has room for 1.5 times the shadow of a cylinder of 0.5 m at three quarters of the range."""
     write_line(tmp_path)
-    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
-    shadow = 0.75 * COLUMNS * 0.5 / (100 * 30 / COLUMNS - 0.5)  # in columns
+    start(sonject, *OF_PORT, answers=PORT_ANSWERS)
+    shadow = 0.75 * COLUMNS * 0.5 / (ALTITUDE - 0.5)  # in columns
     columns = int(re.search(r"columns: (\d+), spread", (tmp_path / "line_campaign.yaml").read_text())[1])
     assert columns % 32 == 0 and -2 <= columns - 3 * shadow < 34
 
 
 def test_the_target_lies_where_the_seabed_is_plain_and_rather_dark(sonject, image):
     """The target lies at the calibration's place, which is further below the ceiling than the reported mean."""
-    assert init(sonject, "swath.npy", answers=ANSWERS).returncode == 0
+    start(sonject, "swath.npy")
     row, column = map(int, re.search(r"position: {row: (\d+), column: (\d+)}", image.with_suffix(".yaml").read_text()).groups())
     assert COLUMNS / 3 <= column < 2 * COLUMNS / 3
     text = (image.parent / "swath_calibration.yaml").read_text()
@@ -271,8 +264,7 @@ def test_the_target_lies_where_the_altitude_is_a_usual_one(sonject, tmp_path):
     """First returns grow fourfold over the pings. The target lies at a ping within 15 % of the median."""
     water = numpy.linspace(60, 240, ROWS)
     numpy.save(tmp_path / "swath.npy", Made("amplitude", water=water.astype(int)).numbers)
-    answer = init(sonject, "swath.npy", answers=["5 cm", "5 cm", "5 mm", "", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.npy", answers=["5 cm", "5 cm", "5 mm", "", "100 kHz", "30 kHz", ""])
     row = int(re.search(r"position: {row: (\d+), ", (tmp_path / "swath.yaml").read_text())[1])
     assert water[row] == pytest.approx(150, rel=0.15)
 
@@ -280,8 +272,7 @@ def test_the_target_lies_where_the_altitude_is_a_usual_one(sonject, tmp_path):
 def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
-    answer = init(sonject, "both.npy", "--campaign", answers=["5 cm", "5 cm", "starboard", "", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
+    answer = start(sonject, "both.npy", "--campaign", answers=["5 cm", "5 cm", "starboard", "", "100 kHz", "30 kHz", ""])
     assert re.search(r"slant range 0\.\d+\.\.\.39\.\d+ m, starboard", answer.stdout), answer.stdout  # 800 columns of 5 cm
     text = (tmp_path / "both_campaign.yaml").read_text()
     assert re.findall(r"side: (\w+)", text) == ["starboard", "port"]
@@ -296,11 +287,9 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
 def test_places_along_the_track_are_as_the_pictures_axes_have_them(sonject, tmp_path):
     """Places use the mean spacing of all pings, 10 cm, though the first half is slow and the second fast. Middles of chips
     are right, and rows 5 from them, 10 % of 48, are off by 5 cm each. A line that ends where it began has no such axis."""
-    sides = [Made("amplitude", water=numpy.full(ROWS, 100), seed=seed).numbers for seed in (1, 2)]
     along = numpy.cumsum(numpy.where(numpy.arange(ROWS) < ROWS / 2, 0.05, 0.15))
-    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=along, altitudes=numpy.full(ROWS, 5.0)))
-    answer = init(sonject, "line.xtf", "--channel", "port", "--campaign", answers=["", "100 kHz", "30 kHz", ""])
-    assert answer.returncode == 0, answer.stderr
+    write_line(tmp_path, row_spacing=along)
+    start(sonject, *OF_PORT, answers=PORT_ANSWERS)
     sonject.done("campaign", "line_campaign.yaml", "-o", "set", "--set", "images=40", "--set", "chip.rows=48", "--set",
                  "swaths[0].avoid=[{along_track: [0 m, 30 m], slant_range: [0 m, 30 m]}]")
     records = [json.loads(path.read_text()) for path in (tmp_path / "set").glob("*/records/*.json")]
@@ -312,15 +301,14 @@ def test_places_along_the_track_are_as_the_pictures_axes_have_them(sonject, tmp_
     assert len(rows) > 20 and max(rows) - min(rows) > 300
     assert found == pytest.approx((along[-1] - along[0]) / (ROWS - 1) * rows, abs=0.05 * 5)
     back = numpy.interp(numpy.arange(ROWS), [0, ROWS / 2, ROWS - 1], [0, 20, 0])
-    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, row_spacing=back, altitudes=numpy.full(ROWS, 5.0)))
+    write_line(tmp_path, row_spacing=back)
     sonject.done("campaign", "line_campaign.yaml", "-o", "back", "--set", "images=4", "--set", "chip.rows=48")
 
 
 def test_one_image_has_no_splits_and_a_target_may_be_a_file(sonject, image):
     (image.parent / "scenes").mkdir()
     (image.parent / "ball.yaml").write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.4 m\n")
-    answer = init(sonject, "swath.npy", "--target", "ball.yaml", "--campaign", "-o", "scenes/mine.yaml", answers=ANSWERS)
-    assert answer.returncode == 0, answer.stderr
+    start(sonject, "swath.npy", "--target", "ball.yaml", "--campaign", "-o", "scenes/mine.yaml")
     text = (image.parent / "scenes" / "mine_campaign.yaml").read_text()
     assert "\nsplits" not in text and text.count("- path:") == 1 and 'class: "ball"' in text
     sonject.done("campaign", "scenes/mine_campaign.yaml", "-o", "set", "--set", "images=4")
