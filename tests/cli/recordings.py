@@ -1,4 +1,5 @@
-"""Small writers of XTF and JSF files, after the published descriptions of the formats, and of scenes of such files."""
+"""Small writers and a reader of XTF and JSF files, after the published descriptions of the formats, and writers of
+scenes of such files."""
 
 import struct
 
@@ -143,3 +144,38 @@ def jsf_bytes(port, starboard, row_spacing=0.1, subsystems=(20,), empty=(), weig
         if row % 5 == 0:
             data += jsf_message(2020, bytes(44))
     return data
+
+
+def samples_of(data, side, subsystem=20):
+    """Returns the samples of a side of a file as above, 0 for port, and the places of their bytes in the file. Both have
+    rows x columns, from near to far, and x 2 if the samples are pairs."""
+    place, places = (1024 if data[0] == 0x7B else 0), []
+    while place < len(data):
+        if data[0] == 0x7B:
+            kind, _, channels, size = struct.unpack_from("<2xBBH4xI", data, place)
+            start = place + 256
+            for _ in range(channels if kind == 0 else 0):
+                channel, count = struct.unpack_from("<H40xI", data, start)
+                if channel == 1 + side:
+                    places.append(start + 64 + 2 * numpy.arange(count)[::1 if side else -1])
+                start += 64 + 2 * count
+        else:
+            mark, kind, found, channel, size = struct.unpack_from("<H2xHxBB3xI", data, place)
+            assert mark == 0x1601
+            size += 16
+            if (kind, found, channel) == (80, subsystem, side):
+                form, count = struct.unpack_from("<34xh78xH", data, place + 16)
+                places.append(place + 256 + 2 * numpy.arange(count * (1 + form)).reshape(count, 1 + form).squeeze())
+        place += size
+    places, content = numpy.array(places), numpy.frombuffer(data, "u1").astype("<u2")
+    samples = content[places] + 256 * content[places + 1]
+    return (samples.view("<i2") if places.ndim == 3 else samples), places
+
+
+def assert_patch_alone_changed(before, after, side):
+    """Asserts that of two files' bytes only samples of that side in the scene's patch differ, and many of these."""
+    inside = samples_of(before, side)[1][10:50, 60:180].ravel()
+    changed = numpy.frombuffer(before, "u1") != numpy.frombuffer(after, "u1")
+    assert (changed[inside] | changed[inside + 1]).sum() > 50
+    changed[inside] = changed[inside + 1] = False
+    assert not changed.any()

@@ -1,4 +1,4 @@
-"""Tests of XTF files and NumPy arrays as input: they are read, injected into and written back."""
+"""Tests of XTF and JSF files and NumPy arrays as input: they are read, injected into and written back."""
 
 import json
 import os
@@ -12,62 +12,28 @@ import images
 import recordings
 from conftest import assert_refused
 from measured_images import measured, read_png
-from recordings import EXPLICIT, write_scene
+from recordings import EXPLICIT, assert_patch_alone_changed, samples_of, write_scene
 
 ROWS, COLUMNS = 60, 200
 LINE = "sidescan/scotsman-iver2.xtf"
 
 
-@pytest.mark.parametrize("side", ["port", "starboard"])
-def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, side):
-    pixels = sides[side == "starboard"]
-    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
-    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(pixels))
+MAKERS = {"xtf": recordings.xtf_bytes, "jsf": recordings.jsf_bytes}
+
+
+@pytest.mark.parametrize("kind", MAKERS)
+@pytest.mark.parametrize("number, side", enumerate(("port", "starboard")))
+def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, kind, number, side):
+    before = MAKERS[kind](*sides)
+    assert numpy.array_equal(samples_of(before, number)[0], sides[number])
+    (tmp_path / f"line.{kind}").write_bytes(before)
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(sides[number]))
     explicit = EXPLICIT.replace("}", f", side: {side}}}")
-    scenes = {
-        "xtf": write_scene(tmp_path, "line.xtf", channel=side),
-        "tif": write_scene(tmp_path, "line.tif", geometry=explicit, altitude="6 m"),
-    }
-    for kind, scene in scenes.items():
-        sonject.done("run", scene, "-o", kind)
-    before = (tmp_path / "line.xtf").read_bytes()
-    after = (tmp_path / "xtf" / "image.xtf").read_bytes()
-    injected = recordings_pixels(after, side)
-    as_tiff = numpy.frombuffer((tmp_path / "tif" / "image.tif").read_bytes(), "<u2",
-                               ROWS * COLUMNS, 8).reshape(ROWS, COLUMNS)
-    assert numpy.array_equal(recordings_pixels(before, side), pixels)
-    assert numpy.array_equal(injected, as_tiff)
-    assert (injected != pixels).sum() > 50
-    # only samples of that channel's patch have changed
-    changed = numpy.flatnonzero(numpy.frombuffer(before, "u1") != numpy.frombuffer(after, "u1"))
-    assert set(changed) <= set(sample_places(before, side, (10, 50), (60, 180)))
-
-
-def packets(data):
-    """Yields (place, kind, bytes) of each packet."""
-    place = 1024
-    while place < len(data):
-        size = int.from_bytes(data[place + 10:place + 14], "little")
-        yield place, data[place + 2], size
-        place += size
-
-
-def line_places(data, side):
-    """Returns the places where each ping's samples of the side begin in a file of xtf_bytes."""
-    step = 0 if side == "port" else 64 + 2 * COLUMNS
-    return [place + 256 + 64 + 14 + 64 + step for place, kind, _ in packets(data) if kind == 0]
-
-
-def recordings_pixels(data, side):
-    lines = [numpy.frombuffer(data, "<u2", COLUMNS, place) for place in line_places(data, side)]
-    return numpy.array([line[::-1] if side == "port" else line for line in lines])
-
-
-def sample_places(data, side, rows, columns):
-    for place in line_places(data, side)[slice(*rows)]:
-        for column in range(*columns):
-            stored = COLUMNS - 1 - column if side == "port" else column
-            yield from (place + 2 * stored, place + 2 * stored + 1)
+    sonject.done("run", write_scene(tmp_path, f"line.{kind}", side), "-o", "of_line")
+    sonject.done("run", write_scene(tmp_path, "line.tif", geometry=explicit, altitude="6 m"), "-o", "tif")
+    after = (tmp_path / "of_line" / f"image.{kind}").read_bytes()
+    assert numpy.array_equal(samples_of(after, number)[0], images.read_tiff(tmp_path / "tif" / "image.tif"))
+    assert_patch_alone_changed(before, after, number)
 
 
 def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides):
@@ -137,33 +103,46 @@ def test_full_scale_is_where_the_recorder_clips(sonject, tmp_path, sides):
     sonject.done("run", scene, "-o", "out", "--set",
                  "input.transfer={kind: amplitude, full_scale: 4095}")
     facts = json.loads((tmp_path / "out" / "run.json").read_text())
-    inside = recordings_pixels((tmp_path / "line.xtf").read_bytes(), "port")[10:50, 60:180]
+    inside = sides[0][10:50, 60:180]
     assert facts["input_clipped_pixels"] == (inside >= 4095).sum()
-    after = recordings_pixels((tmp_path / "out" / "image.xtf").read_bytes(), "port")
+    after, _ = samples_of((tmp_path / "out" / "image.xtf").read_bytes(), 0)
     assert after[10:50, 60:180].max() == max(4095, inside.max())
 
 
-def test_pings_are_weighed(sonject, tmp_path, sides):
-    """A ping of weight N has samples in units of 2^-N, as in JSF. Equal weights change nothing."""
-    weights = numpy.random.default_rng(5).integers(-2, 3, ROWS)
+def as_array(samples):
+    return (samples[..., 0] + 1j * samples[..., 1]).astype("c8") if samples.ndim == 3 else samples
+
+
+@pytest.mark.parametrize("kind, is_analytic", [("xtf", False), ("jsf", False), ("jsf", True)])
+def test_pings_are_weighed(sonject, tmp_path, sides, kind, is_analytic):
+    """A ping of weight N has samples in units of 2^-N. The finest steps are 1. 16 bits clip larger values. Equal weights
+    change nothing."""
+    random = numpy.random.default_rng(5)
+    weights = random.integers(-2, 3, ROWS)
     weights[:2] = -2, 2
-    scale = 2.0 ** (2 - weights)[:, None]
-    for name, told in (("line.xtf", weights), ("equal.xtf", numpy.full(ROWS, 3))):
-        (tmp_path / name).write_bytes(recordings.xtf_bytes(*sides, weights=told))
-        sonject.done("convert", name, "a.npy", "--channel", "port")
+    port = random.normal(0.0, 3000.0, (ROWS, COLUMNS, 2)).astype(numpy.int16) if is_analytic else sides[0]
+    scale = (2.0 ** (2 - weights)).reshape(ROWS, *[1] * (port.ndim - 1))
+    for name, told in (("equal", numpy.full(ROWS, 3)), ("line", weights)):
+        (tmp_path / f"{name}.{kind}").write_bytes(MAKERS[kind](port, port, weights=told))
+        sonject.done("convert", f"{name}.{kind}", "a.npy", "--channel", "port")
         shown = numpy.load(tmp_path / "a.npy")
-        assert numpy.array_equal(shown, sides[0] * scale if told is weights else sides[0])
-        assert shown.dtype == ("f4" if told is weights else "u2")
-    other = (sides[0] * scale).astype("f4")
+        assert shown.dtype == ("c8" if is_analytic else "f4" if name == "line" else "u2")
+        assert numpy.array_equal(shown, as_array(port * scale if name == "line" else port))
+    other = (port * scale).astype("f4")
     other[4, 5] = 1e9
-    other[5, 6] = 100.4 * scale[5, 0]
-    numpy.save(tmp_path / "b.npy", other)
-    sonject.done("convert", "b.npy", "back.xtf", "--into", "line.xtf", "--channel", "port")
-    expected = numpy.array(sides[0])
-    expected[4, 5], expected[5, 6] = 65535, 100
-    back = (tmp_path / "back.xtf").read_bytes()
-    assert numpy.array_equal(recordings_pixels(back, "port"), expected)
-    assert numpy.array_equal(recordings_pixels(back, "starboard"), sides[1])
+    other[5, 6] = 100.4 * scale[5]
+    numpy.save(tmp_path / "b.npy", as_array(other))
+    into = ("--into", f"line.{kind}", "--channel", "port")
+    noted = sonject.done("convert", "b.npy", f"back.{kind}", *into)
+    assert f"note: back.{kind} cannot hold {1 + is_analytic} of the changed numbers" in noted.stderr
+    expected = numpy.array(port)
+    expected[4, 5], expected[5, 6] = 32767 if is_analytic else 65535, 100
+    back = (tmp_path / f"back.{kind}").read_bytes()
+    assert numpy.array_equal(samples_of(back, 0)[0], expected) and numpy.array_equal(samples_of(back, 1)[0], port)
+    other[7, 8] = numpy.nan
+    numpy.save(tmp_path / "b.npy", as_array(other))
+    assert_refused(sonject("convert", "b.npy", f"nan.{kind}", *into), 3,
+                   "the sample at row 7, column 8 is not a number, which the file cannot hold")
 
 
 REFUSALS = {
@@ -351,13 +330,12 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
         assert 0.15 * (place["column"] + 0.5) > altitudes[place["row"] + 15]
 
 
-@pytest.mark.parametrize("kind", ["xtf", "jsf"])
+@pytest.mark.parametrize("kind", MAKERS)
 def test_pings_without_samples_make_no_row_and_are_named(sonject, tmp_path, sides, kind):
     """The image has only the other pings' rows. Truth and patch count these rows."""
     gone = {3, 20, 21, 59}
-    make = recordings.xtf_bytes if kind == "xtf" else recordings.jsf_bytes
     options = {"silent": gone} if kind == "xtf" else {"empty": gone}
-    (tmp_path / f"line.{kind}").write_bytes(make(*sides, **options))
+    (tmp_path / f"line.{kind}").write_bytes(MAKERS[kind](*sides, **options))
     sonject.done("convert", f"line.{kind}", "a.npy", "--channel", "port")
     kept = [row for row in range(ROWS) if row not in gone]
     assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), sides[0][kept])
