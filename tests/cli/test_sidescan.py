@@ -134,6 +134,11 @@ def records(folder):
     return [json.loads(path.read_text()) for path in sorted((folder / "all" / "records").iterdir())]
 
 
+def target_of(folder, record):
+    """Returns the truth of an image's target."""
+    return json.loads((folder / "all" / "truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+
+
 def test_grey_images_are_the_line_as_it_is_converted(sonject, tmp_path, line):
     """Grey images equal the converted line except where a target changes them. fit refuses their levels."""
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,6\n59,6\n")
@@ -169,7 +174,7 @@ def test_campaigns_know_the_highest_ping(sonject, tmp_path, line):
     for record in records(tmp_path / "data"):
         assert 0.15 * (record["swath"]["column"] + 0.5) > 9.0
         rows = record["swath"]["row"] + numpy.arange(16)
-        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        truth = target_of(tmp_path / "data", record)
         altitude = numpy.interp(rows, [0, 30, 59], [5, 9, 7]).mean()
         assert truth["ground_range_m"]**2 + (altitude - truth["height_m"])**2 == pytest.approx(
             truth["slant_range_m"]**2, rel=1e-6)
@@ -217,6 +222,16 @@ def waterfall(tmp_path):
     for name, pixels in zip(("port", "starboard"), sides):
         (tmp_path / f"{name}.tif").write_bytes(images.tiff_bytes(pixels))
     return sides
+
+
+def write_both(folder, geometry, more="", name="scene.yaml", altitude="6 m", pings=""):
+    """Writes a scene of the image of both sides, without objects."""
+    (folder / name).write_text(f"""\
+sonject: 1
+input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, {geometry}}}, {pings}}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: {altitude}, resolution: 0.1 m}}
+{more}
+""")
 
 
 def run_sides(sonject, folder, side):
@@ -341,43 +356,24 @@ sonject:range_axis=slant"""))
     ("side: port", "", "input.geometry.first_slant_range: missing; add it"),
 ])
 def test_wrong_nadir_columns_are_refused(sonject, tmp_path, waterfall, geometry, patch, words):
-    (tmp_path / "scene.yaml").write_text(f"""\
-sonject: 1
-input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, {geometry}}}}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
-{patch and "patch: " + patch}
-""")
+    write_both(tmp_path, geometry, patch and f"patch: {patch}")
     assert_refused(sonject("check", "scene.yaml"), 3, "scene.yaml:2:", words)
 
 
 def test_without_a_patch_the_side_is_worked_on(sonject, tmp_path, waterfall):
     for side, words in (("port", "60 x 204 pixels from row 0, column 0\n"),
                         ("starboard", "60 x 196 pixels from row 0, column 204\n")):
-        (tmp_path / "scene.yaml").write_text(f"""\
-sonject: 1
-input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
-""")
+        write_both(tmp_path, f"nadir_column: 203.5, side: {side}")
         assert words in sonject.done("check", "scene.yaml").stdout
 
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_campaigns_cut_images_out_of_a_side(sonject, tmp_path, waterfall, side):
     """Images are cut as they lie in the side, away from contacts, which are in the image's own pixels."""
-    (tmp_path / "base.yaml").write_text(f"""\
-sonject: 1
-input: {{path: both.tif, geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}}
-""")
-    (tmp_path / "campaign.yaml").write_text("""\
-sonject_campaign: 1
-scene: base.yaml
-images: 24
-chip: {rows: 16, columns: 60, slant_range: [8 m, 14 m]}
-swaths: [{path: both.tif, avoid: [{row: 20, column: 120, rows: 5, columns: 10}]}]
-targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
-""")
-    sonject.done("campaign", "campaign.yaml", "-o", "data")
+    write_both(tmp_path, f"nadir_column: 203.5, side: {side}", name="base.yaml")
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN.replace("columns: 60", "columns: 60, slant_range: [8 m, 14 m]"))
+    sonject.done("campaign", "campaign.yaml", "-o", "data", "--set", "images=24", "--set", "targets[0].object.diameter=0.5 m",
+                 "--set", "swaths=[{path: both.tif, avoid: [{row: 20, column: 120, rows: 5, columns: 10}]}]")
     pixels = images.read_tiff(tmp_path / "both.tif")
     columns = [record["swath"]["column"] for record in records(tmp_path / "data")]
     assert max(columns) - min(columns) > 10
@@ -389,7 +385,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
         assert nearest > 6 and not (row < 25 and row + 16 > 20 and column < 130 and column + 60 > 120)
         image = images.read_tiff(tmp_path / "data/all/images" / f"{record['id']:08}.tif")
         cut = pixels[row:row + 16, column:column + 60]
-        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        truth = target_of(tmp_path / "data", record)
         changed = numpy.argwhere(image != cut)
         assert (image == cut).mean() > 0.5 and abs(numpy.median(changed[:, 0]) - truth["row"]) < 4
         # the shadow lies behind the target, away from the nadir
@@ -402,20 +398,9 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.5 m}}]
 def test_images_are_limited_in_range_over_altitude(sonject, tmp_path, waterfall, side):
     """The limits hold at any altitude. Images may begin in the water column, and targets lie up to its edge."""
     (tmp_path / "pings.csv").write_text("row,altitude_m\n0,4\n30,7\n59,5\n")
-    (tmp_path / "base.yaml").write_text(f"""\
-sonject: 1
-input: {{path: both.tif, pings: pings.csv,
-         geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, nadir_column: 203.5, side: {side}}}}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: from_file, resolution: 0.1 m}}
-""")
-    campaign = """\
-sonject_campaign: 1
-scene: base.yaml
-images: 40
-chip: {rows: 16, columns: 60, spread: 0.9, range_over_altitude: [1.1, 1.8]}
-swaths: [{path: both.tif}]
-targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
-"""
+    write_both(tmp_path, f"nadir_column: 203.5, side: {side}", name="base.yaml", altitude="from_file", pings="pings: pings.csv")
+    campaign = CAMPAIGN.replace("images: 12", "images: 40").replace("line.tif", "both.tif").replace(
+        "columns: 60", "columns: 60, spread: 0.9, range_over_altitude: [1.1, 1.8]")
     (tmp_path / "campaign.yaml").write_text(campaign)
     sonject.done("campaign", "campaign.yaml", "-o", "data")
     ratios, begins, grounds = [], [], []
@@ -425,7 +410,7 @@ targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
         columns = numpy.abs(record["swath"]["column"] + numpy.array([0, 29.5, 59]) - NADIR) * 0.15
         ratios.append(columns[1] / altitude)
         begins.append(columns.min() / altitude)
-        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        truth = target_of(tmp_path / "data", record)
         grounds.append(truth["ground_range_m"] / altitude)
     assert 1.1 <= min(ratios) < 1.25 and 1.6 < max(ratios) <= 1.8
     assert numpy.mean(numpy.array(begins) < 1) > 0.9 and min(grounds) < 0.35
@@ -445,7 +430,7 @@ def test_objects_of_whole_swaths_are_limited_in_range_over_altitude(sonject, tmp
     sonject.done("campaign", write_campaign(tmp_path, text.replace("images: 12", "images: 24")), "-o", "data")
     ranges = []
     for record in records(tmp_path / "data"):
-        truth = json.loads((tmp_path / "data/all/truth" / f"{record['id']:08}.json").read_text())["objects"][0]
+        truth = target_of(tmp_path / "data", record)
         first, last = 4 + 3 / 40 * (record["swath"]["row"] + numpy.array([0, 15]))
         assert last < 7.01
         # the object's column is that of its middle, and its highlight is nearer
