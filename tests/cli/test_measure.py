@@ -24,6 +24,14 @@ def write(path, pixels):
     return path.name
 
 
+def write_scene(folder, source, ball, first_range=30, more=""):
+    """Writes a scene with a sphere. source: the keys of its image."""
+    (folder / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{{source}, geometry: {{row_spacing: 2.5 cm, column_spacing: 2.5 cm, "
+        f"first_slant_range: {first_range} m}}}}\nsonar: {{frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}}\n"
+        f"objects: [{{name: ball, shape: sphere, {ball}}}]\n{more}")
+
+
 def told(answer):
     assert answer.returncode == 0, answer.stderr
     return json.loads(answer.stdout)
@@ -94,14 +102,7 @@ def test_steps_of_grey_are_kept(sonject, tmp_path):
     """Eight bits in a file of sixteen stay multiples of 256, also in a run with a target."""
     grey = numpy.clip(speckle() * 600, 0, 200).astype(numpy.uint16) * 256
     write(tmp_path / "swath.tif", grey)
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\n"
-        "input:\n"
-        "  path: swath.tif\n"
-        "  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 40 m}\n"
-        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        "objects:\n"
-        "  - {shape: sphere, diameter: 0.5 m, level: {over_seabed: 12 dB}}\n")
+    write_scene(tmp_path, "path: swath.tif", "diameter: 0.5 m, level: {over_seabed: 12 dB}", 40)
     sonject.done("run", "scene.yaml", "-o", "out", "--quiet")
     after = numpy.frombuffer((tmp_path / "out" / "image.tif").read_bytes(), "<u2", grey.size, 8)
     changed = after.reshape(grey.shape) != grey
@@ -178,32 +179,24 @@ def test_numbers_that_cannot_be_measured(sonject, tmp_path):
 
 
 @pytest.mark.parametrize("change, note", [
-    ("{diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "'ball' cannot be seen: neither its highlight"),
-    ("{diameter: 60 cm, level: {over_seabed: 0 dB}", "the highlight of 'ball' does not stand out from the seabed"),
-    ("{diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("{diameter: 30 cm", None),
-    ("{diameter: 60 cm, level: {over_seabed: 30 dB}, position: {row: 64, column: 8}", "its level counts for the part in view")])
+    ("diameter: 10 cm, burial: 8 cm, level: {over_seabed: 1 dB}", "'ball' cannot be seen: neither its highlight"),
+    ("diameter: 60 cm, level: {over_seabed: 0 dB}", "the highlight of 'ball' does not stand out from the seabed"),
+    ("diameter: 30 cm, burial: 40 cm", "nothing of 'ball' is in view"), ("diameter: 30 cm", None),
+    ("diameter: 60 cm, level: {over_seabed: 30 dB}, position: {row: 64, column: 8}", "its level counts for the part in view")])
 def test_a_run_notes_what_nobody_would_see(sonject, tmp_path, change, note):
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\ninput: {synthetic: {rows: 128, columns: 128, seed: 3}, geometry: {row_spacing: 2.5 cm, "
-        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
-        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        f"objects: [{change}, name: ball, shape: sphere"
-        f"{'' if 'position' in change else ', position: {row: 64, column: 64}'}}}]\n")
-    answer = sonject("run", "scene.yaml", "-o", "out")
-    assert answer.returncode == 0, answer.stderr
-    notes = [line for line in answer.stderr.splitlines() if "note: " in line]
+    write_scene(tmp_path, "synthetic: {rows: 128, columns: 128, seed: 3}",
+                change if "position" in change else f"{change}, position: {{row: 64, column: 64}}")
+    notes = [line for line in sonject.done("run", "scene.yaml", "-o", "out").stderr.splitlines() if "note: " in line]
     assert len(notes) == (note is not None) and all(note in line for line in notes)
+
+
+ROUGH = "diameter: 60 cm, material: {reflection: 0, lambert: 0.1}, position: {row: 80, column: 80}"
 
 
 def test_a_seabed_near_the_ceiling_is_told_once(sonject, tmp_path):
     swath = numpy.random.default_rng(6).rayleigh(300, (128, 128))
     write(tmp_path / "swath.tif", numpy.minimum(swath, 255).astype(numpy.uint8))
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\ninput: {path: swath.tif, transfer: {kind: amplitude}, geometry: {row_spacing: 2.5 cm, "
-        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
-        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        "objects: [{level: {over_seabed: 6 dB}, name: ball, shape: sphere, diameter: 60 cm, "
-        "material: {reflection: 0, lambert: 0.1}, position: {row: 80, column: 80}}]\n")
+    write_scene(tmp_path, "path: swath.tif, transfer: {kind: amplitude}", "level: {over_seabed: 6 dB}, " + ROUGH)
     notes = sonject.done("run", "scene.yaml", "-o", "out").stderr
     assert re.search("no highlight of 'ball' can stand out: the seabed there is [0-9.]+ dB below the image's ceiling", notes)
     assert "raise" not in notes and "would leave room" not in notes
@@ -215,16 +208,11 @@ def test_a_seabed_near_the_ceiling_is_told_once(sonject, tmp_path):
 def test_highlights_at_the_ceiling_are_told(sonject, tmp_path, level, ceiling, stored):
     """The ceiling is the file's largest number, or a lower one that the picture keeps. Floats have none."""
     swath = numpy.random.default_rng(6).rayleigh(2 if ceiling == 15 else 30, (128, 128))
-    full_scale = f"transfer: {{kind: amplitude, full_scale: {ceiling}}}, " if ceiling == 15 else ""
+    transfer = f", transfer: {{kind: amplitude, full_scale: {ceiling}}}" if ceiling == 15 else ""
     if ceiling == 200:
         swath[:40, :40] = 200
     write(tmp_path / "swath.tif", numpy.minimum(swath, ceiling or swath).astype(stored))
-    (tmp_path / "scene.yaml").write_text(
-        f"sonject: 1\ninput: {{path: swath.tif, {full_scale}geometry: {{row_spacing: 2.5 cm, "
-        "column_spacing: 2.5 cm, first_slant_range: 30 m}}\n"
-        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        f"objects: [{{level: {{over_seabed: {level} dB}}, name: ball, shape: sphere, diameter: 60 cm, "
-        "material: {reflection: 0, lambert: 0.1}, position: {row: 80, column: 80}}]\n")
+    write_scene(tmp_path, f"path: swath.tif{transfer}", f"level: {{over_seabed: {level} dB}}, {ROUGH}")
     notes = sonject.done("run", "scene.yaml", "-o", "out").stderr
     (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
     image = read_tiff(tmp_path / "out" / "image.tif")
@@ -251,11 +239,8 @@ def test_the_water_column_is_nobodys_seabed(sonject, tmp_path):
     swath = numpy.random.default_rng(5).rayleigh(30, (128, 160))
     swath[:, :40] = 1
     write(tmp_path / "swath.tif", swath.astype(numpy.float32))
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\ninput: {path: swath.tif, geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, "
-        "first_slant_range: 9 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        "injection: {noise_floor: -25 dB}\n"
-        "objects: [{name: ball, shape: sphere, diameter: 60 cm, position: {row: 64, column: 60}}]\n")
+    write_scene(tmp_path, "path: swath.tif", "diameter: 60 cm, position: {row: 64, column: 60}", 9,
+                "injection: {noise_floor: -25 dB}\n")
     sonject.done("run", "scene.yaml", "-o", "out")
     (ball,) = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]
     assert ball["shadow"]["column"] < 40 + 24 and ball["shadow_visibility_db"] < -6
