@@ -4,27 +4,26 @@
  * (on a GPU: the clock). Primary rays come from a fan like a sonar's, strip by strip. Bounced rays
  * leave their hits by Lambert's law. Prints one line per kind of ray, and how the device's time
  * grows with the triangles. Fails only if device and native C differ in a bit. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include <pthread.h>
 #include <time.h>
+#include <unistd.h>
 
-#include "base/report.h"
 #include "base/system/process.h"
-#include "benchmark_scene.h"
+#include "device/backend.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"
 #include "kernel/mesh_samples.h"
 #include "kernel/probe_device.h"
 #include "mesh_arrays.h"
+#include "physics/bench.h"
 
 #ifdef HAS_EMBREE
 #include <embree3/rtcore.h>
 #endif
 
-#define REPEATS 7
-#define SIDE    1024 /* number of strips, and of rays per strip */
+#define REPEATS     7
+#define SIDE        1024 /* number of strips, and of rays per strip */
+#define THREADS_MAX 64
 
 /* Embree's copy of the mesh. Where Embree is not installed, embree_open returns NULL. */
 struct embree_scene;
@@ -142,16 +141,38 @@ struct rays {
     uint32_t count;
 };
 
-static void trace_rays(const void *what, unsigned thread, uint32_t first, uint32_t last)
+/* A thread's rays. */
+struct share {
+    const struct rays *rays;
+    uint32_t first, last;
+};
+
+static void *trace_share(void *argument)
 {
-    const struct rays *rays = what;
-    (void)thread;
+    const struct share *share = argument;
+    const struct rays *rays = share->rays;
     if (rays->embree)
-        embree_trace(rays->embree, rays->is_coherent, rays->input, rays->output, rays->count, first,
-                     last);
+        embree_trace(rays->embree, rays->is_coherent, rays->input, rays->output, rays->count,
+                     share->first, share->last);
     else
-        mesh_native_wide(rays->mesh, MESH_NEAREST, rays->input, rays->output, rays->count, first,
-                         last);
+        mesh_native_wide(rays->mesh, MESH_NEAREST, rays->input, rays->output, rays->count,
+                         share->first, share->last);
+    return NULL;
+}
+
+/* Traces packets of 16 rays in threads. */
+static void trace_rays(const struct rays *rays, unsigned threads)
+{
+    pthread_t workers[THREADS_MAX];
+    struct share shares[THREADS_MAX];
+    const uint64_t packets = rays->count / 16;
+    for (unsigned i = 0; i < threads; i++) {
+        shares[i] = (struct share){rays, (uint32_t)(packets * i / threads) * 16,
+                                   (uint32_t)(packets * (i + 1) / threads) * 16};
+        pthread_create(&workers[i], NULL, trace_share, &shares[i]);
+    }
+    for (unsigned i = 0; i < threads; i++)
+        pthread_join(workers[i], NULL);
 }
 
 /* Returns the processor time of all threads together. */
@@ -166,7 +187,7 @@ static double time_rays(const struct rays *rays, unsigned threads)
     double best = INFINITY;
     for (int i = 0; i < REPEATS; i++) {
         const double start = processor_seconds();
-        benchmark_share_out(trace_rays, rays, threads, rays->count, 16);
+        trace_rays(rays, threads);
         best = fmin(best, (processor_seconds() - start) / threads);
     }
     return best;
@@ -232,8 +253,7 @@ static uint32_t lay_bounces(const float *output, uint32_t fan_rays, float *input
 }
 
 struct bench_set {
-    struct report report;
-    struct device *device;
+    struct bench bench;
     struct mesh mesh;
     struct probe_device probe;
     struct embree_scene *embree;
@@ -244,7 +264,8 @@ struct bench_set {
 static int compare(struct bench_set *set, const char *name, bool is_coherent, const float *input,
                    float *output, uint32_t rays)
 {
-    float *native = benchmark_array(rays, PROBE_OUTPUTS * sizeof *native);
+    float *native = calloc(rays, PROBE_OUTPUTS * sizeof *native);
+    assert_non_null(native);
     const double device_s = probe_device_run(&set->probe, "nearest", input, output, rays, REPEATS);
     struct rays work = {&set->mesh, NULL, is_coherent, input, native, rays};
     const double native_s = time_rays(&work, set->threads);
@@ -273,34 +294,47 @@ static double build_mesh(struct bench_set *set, uint32_t around, uint32_t across
     mesh_options_init(&options);
     sample_ring(&sample, around, across);
     const double start = clock_seconds();
-    benchmark_expect(&set->report,
-                     mesh_from_arrays(&set->report, "ring", sample.positions, sample.vertices,
-                                      sample.corners, sample.triangles, &options, &set->mesh));
+    struct report *report = &set->bench.report;
+    EXPECT_OK(report, mesh_from_arrays(report, "ring", sample.positions, sample.vertices,
+                                       sample.corners, sample.triangles, &options, &set->mesh));
     const double taken = clock_seconds() - start;
     sample_clear(&sample);
     return taken;
 }
 
+static void begin_probe(struct bench_set *set)
+{
+    struct device *device = set->bench.device;
+    probe_device_begin(&set->probe, &set->bench.report, device, device->width, &set->mesh);
+}
+
+/* Opens the first OpenCL device. Its cores, or beside a GPU the host's, run native C's threads. */
 static void set_up(struct bench_set *set)
 {
-    static char names[BENCHMARK_DEVICES][128];
-    sonject_context_params params = {.struct_size = sizeof params, .device_name = names[0]};
+    static char names[BENCH_DEVICES][128];
+    const size_t count = bench_devices(names);
+    size_t first = 0;
     double build_s;
-    if (benchmark_opencl_devices(names) == 0) {
+    while (first < count && native_is_named(names[first]))
+        first++;
+    if (first == count) {
         printf("no OpenCL device: nothing is timed\n");
         exit(1);
     }
-    benchmark_expect(&set->report, device_open(&set->report, &params, &set->device));
+    bench_device = names[first];
+    bench_open(&set->bench, 1, 1, 18.0);
     const double ready_s = build_mesh(set, 730, 366);
     printf("mesh of %zu triangles: ready after %.2f s on one core", set->mesh.triangle_count,
            ready_s);
     set->embree = embree_open(&set->mesh, &build_s);
     if (set->embree)
         printf(" (Embree's hierarchy alone %.2f s)", build_s);
-    set->threads = benchmark_threads(set->device);
-    printf("\ndevice: %s, %u lanes, %u cores\n", set->device->name, (unsigned)set->device->width,
+    const struct device *device = set->bench.device;
+    const long cores = device->is_cpu ? (long)device->compute_units : sysconf(_SC_NPROCESSORS_ONLN);
+    set->threads = cores < 1 ? 1 : cores < THREADS_MAX ? (unsigned)cores : THREADS_MAX;
+    printf("\ndevice: %s, %u lanes, %u cores\n", device->name, (unsigned)device->width,
            set->threads);
-    probe_device_begin(&set->probe, &set->report, set->device, set->device->width, &set->mesh);
+    begin_probe(set);
 }
 
 /* Prints the device's time per ray on rings of more and more triangles. */
@@ -311,7 +345,7 @@ static void print_growth(struct bench_set *set, float *input, float *output)
     printf("triangles  primary ns  bounced ns\n");
     for (size_t i = 0; i < sizeof around / sizeof *around; i++) {
         build_mesh(set, around[i], around[i] / 2);
-        probe_device_begin(&set->probe, &set->report, set->device, set->device->width, &set->mesh);
+        begin_probe(set);
         lay_fan(input, rays);
         const double primary_s =
             probe_device_run(&set->probe, "nearest", input, output, rays, REPEATS);
@@ -330,8 +364,9 @@ int main(void)
 {
     static struct bench_set set;
     const uint32_t rays = SIDE * SIDE;
-    float *input = benchmark_array(rays, PROBE_INPUTS * sizeof *input);
-    float *output = benchmark_array(rays, PROBE_OUTPUTS * sizeof *output);
+    float *input = calloc(rays, PROBE_INPUTS * sizeof *input);
+    float *output = calloc(rays, PROBE_OUTPUTS * sizeof *output);
+    assert_true(input && output);
     set_up(&set);
     lay_fan(input, rays);
     int differs = compare(&set, "primary", true, input, output, rays);
@@ -343,7 +378,7 @@ int main(void)
     embree_close(set.embree);
     mesh_clear(&set.mesh);
     print_growth(&set, input, output);
-    device_close(&set.device);
+    bench_close(&set.bench);
     free(input);
     free(output);
     return differs;

@@ -1,18 +1,11 @@
 /* The cost of clutter: 1...1000 parts strewn over a patch, once with one size for each part and
  * once with one area for all together. Prints a table: ns per ray of the rough part and of two
  * interactions; seconds of the whole injection, of its tracing and of its image formation. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include "base/report.h"
 #include "base/system/process.h"
-#include "benchmark_scene.h"
 #include "inject/injection.h"
-#include "trace/chains.h"
-#include "trace/rough.h"
+#include "physics/bench.h"
 
 #define PIXELS      512
 #define SIZE_M      0.2 /* size of each part, in the rows of one size */
@@ -43,7 +36,7 @@ static void shape_part(sonject_object_params *part, uint32_t number, double size
     part->diameter_m = part->shape == SHAPE_SPHERE ? size : 0.6 * size;
 }
 
-static void strew(struct benchmark_scene *set, uint32_t parts, double size)
+static void strew(struct bench *bench, uint32_t parts, double size)
 {
     const uint32_t objects = parts < OBJECTS_MAX ? parts : OBJECTS_MAX;
     const uint32_t in_cluster = parts / objects;
@@ -65,85 +58,85 @@ static void strew(struct benchmark_scene *set, uint32_t parts, double size)
             for (int axis = 0; axis < 3; axis++)
                 part.axes[axis][axis] = 1.0;
             part.centre[k % 2] = (k < 2 ? -0.8 : 0.8) * size;
-            benchmark_expect(&set->report, scene_append_part(&set->scene, &set->report, &part));
+            EXPECT_OK(&bench->report, scene_append_part(&bench->scene, &bench->report, &part));
         }
-        benchmark_expect(&set->report, scene_append_object(&set->scene, &set->report, &object));
+        EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &object));
     }
 }
 
 /* Returns the clock's time, s. On a CPU it is the processors' time over their number, since other
  * programs may run, too. */
-static double seconds_of(const struct benchmark_scene *set)
+static double seconds_of(const struct bench *bench)
 {
-    const struct device *device = set->tracer.device;
+    const struct device *device = bench->tracer.device;
     return device->is_cpu ? (double)clock() / CLOCKS_PER_SEC / device->compute_units
                           : clock_seconds();
 }
 
-static double ns_of_rough_rays(struct benchmark_scene *set)
+static double ns_of_rough_rays(struct bench *bench)
 {
     static struct rough_trace trace;
-    struct tracer *tracer = &set->tracer;
+    struct tracer *tracer = &bench->tracer;
     const uint64_t rays = tracer->counts.rays;
-    const double start = seconds_of(set);
-    benchmark_expect(&set->report, rough_trace_begin(&trace, tracer, NULL));
+    const double start = seconds_of(bench);
+    EXPECT_OK(&bench->report, rough_trace_begin(&trace, tracer, NULL));
     const struct span strips = {trace.grid.strips.first, trace.chunk};
-    float *energy = benchmark_array(line_grid_cells(&trace.grid), sizeof *energy);
-    benchmark_expect(&set->report, rough_trace_strips(&trace, tracer, strips, energy));
-    const double taken = seconds_of(set) - start;
+    float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
+    assert_non_null(energy);
+    EXPECT_OK(&bench->report, rough_trace_strips(&trace, tracer, strips, energy));
+    const double taken = seconds_of(bench) - start;
     free(energy);
     rough_trace_end(&trace);
     return 1e9 * taken / (double)(tracer->counts.rays - rays);
 }
 
 /* Returns the time per ray of two interactions, over all fans and samples. */
-static double ns_of_chains(struct benchmark_scene *set)
+static double ns_of_chains(struct bench *bench)
 {
-    struct tracer *tracer = &set->tracer;
+    struct tracer *tracer = &bench->tracer;
     struct chain_trace trace;
     struct chain_fan fan;
-    benchmark_expect(&set->report, chain_trace_begin(&trace, tracer, NULL));
+    EXPECT_OK(&bench->report, chain_trace_begin(&trace, tracer, NULL));
     const uint64_t rays = tracer->counts.rays;
-    const double start = seconds_of(set);
+    const double start = seconds_of(bench);
     for (uint32_t i = 0; i < chain_fan_count(tracer); i++) {
-        benchmark_expect(&set->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
+        EXPECT_OK(&bench->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
         if (fan.strips.count > 0)
-            benchmark_expect(&set->report, chain_trace_strips(&trace, tracer, &fan, fan.strips));
+            EXPECT_OK(&bench->report, chain_trace_strips(&trace, tracer, &fan, fan.strips));
     }
-    const double taken = seconds_of(set) - start;
+    const double taken = seconds_of(bench) - start;
     chain_trace_end(&trace);
     return 1e9 * taken / (double)(tracer->counts.rays - rays);
 }
 
-static void print_injection(struct benchmark_scene *set)
+static void print_injection(struct bench *bench)
 {
     struct injection_result result;
-    float *pixels = benchmark_array((size_t)PIXELS * PIXELS, sizeof *pixels);
+    static float pixels[PIXELS * PIXELS];
     const struct injection_input input = {.rows = PIXELS, .columns = PIXELS, .pixels = pixels};
     for (size_t i = 0; i < (size_t)PIXELS * PIXELS; i++)
         pixels[i] = 1.0f;
-    const double start = seconds_of(set);
-    benchmark_expect(&set->report, injection_run(&set->report, set->tracer.device, &set->scene,
-                                                 &input, NULL, NULL, &result));
-    printf(" | %8.3f %8.3f %8.3f\n", seconds_of(set) - start, result.statistics.trace_s,
+    const double start = seconds_of(bench);
+    EXPECT_OK(&bench->report, injection_run(&bench->report, bench->tracer.device, &bench->scene,
+                                            &input, NULL, NULL, &result));
+    printf(" | %8.3f %8.3f %8.3f\n", seconds_of(bench) - start, result.statistics.trace_s,
            result.statistics.form_s);
     injection_result_clear(&result);
-    free(pixels);
 }
 
 static void print_row(uint32_t parts, double size)
 {
-    static struct benchmark_scene set;
-    benchmark_begin(&set, NULL, PIXELS);
-    strew(&set, parts, size);
-    set.scene.injection.interactions = 2;
-    benchmark_place(&set, PIXELS);
-    ns_of_rough_rays(&set); /* builds the programs */
-    printf("%5u %6.3f | %7.1f", (unsigned)parts, size, ns_of_rough_rays(&set));
-    printf(" | %9.1f", ns_of_chains(&set));
-    print_injection(&set);
+    static struct bench bench;
+    bench_open(&bench, PIXELS, PIXELS, 50.0);
+    strew(&bench, parts, size);
+    bench.scene.injection.interactions = 2;
+    bench_ready(&bench);
+    ns_of_rough_rays(&bench); /* builds the programs */
+    printf("%5u %6.3f | %7.1f", (unsigned)parts, size, ns_of_rough_rays(&bench));
+    printf(" | %9.1f", ns_of_chains(&bench));
+    print_injection(&bench);
     fflush(stdout);
-    benchmark_clear(&set);
+    bench_close(&bench);
 }
 
 int main(int argc, char **argv)

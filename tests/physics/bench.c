@@ -12,8 +12,9 @@ static void expect_ok(struct bench *bench, sonject_status status)
 
 const char *bench_device;
 
-/* A device of bench_device that a bench gave back, with its programs, or NULL. */
+/* A device that a bench gave back, with its programs, or NULL, and the bench_device that it is. */
 static struct device *free_device;
+static const char *free_device_name;
 
 struct device *bench_open_device(struct bench *bench)
 {
@@ -51,7 +52,7 @@ struct device *bench_open_reference(struct bench *bench)
 
 static void take_device(struct bench *bench)
 {
-    if (free_device) {
+    if (free_device && free_device_name == bench_device) {
         bench->tracer.device = free_device;
         free_device = NULL;
     } else {
@@ -68,6 +69,7 @@ static void give_device_back(struct bench *bench)
     if (*device && *device == bench->device && (*device)->width == bench->device_width) {
         device_close(&free_device);
         free_device = *device;
+        free_device_name = bench_device;
         *device = NULL;
     }
     device_close(device);
