@@ -107,6 +107,13 @@ def scene(tmp_path, swath):
     return write_scene(tmp_path, swath)
 
 
+def write_text(folder, source, geometry, objects="", altitude="10 m", sonar="frequency: 100 kHz, bandwidth: 30 kHz", more=""):
+    """Writes scene.yaml in flow style. source: the keys of the input but for its geometry. more: other sections."""
+    (folder / "scene.yaml").write_text(
+        f"sonject: 1\ninput: {{{source}, geometry: {{{geometry}}}}}\nsonar: {{{sonar}, altitude: {altitude}}}\n"
+        f"objects: [{objects}]\n{more}")
+
+
 def files_below(folder):
     """Returns all files below the folder, or none if the folder is missing. Commands may be writing there."""
     return sorted(pathlib.Path(place, name) for place, _, names in os.walk(folder) for name in names)

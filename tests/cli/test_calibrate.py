@@ -7,7 +7,7 @@ import re
 import numpy
 import pytest
 
-from conftest import assert_refused
+from conftest import assert_refused, write_text
 from images import png_bytes
 from made_swaths import COLUMNS, KINDS, ROWS, Made, deviations, sidescan, speckle
 from measured_images import measured, read_png, read_xtf
@@ -107,9 +107,7 @@ def test_a_misfit_tells_what_no_law_of_speckle_explains(sonject, tmp_path):
         told.append(calibrated(sonject, "made.npy")["measured"]["transfer"]["misfit"])
     assert told[0]["fits"] and told[0]["value"] < 0.005 and 0 < told[0]["standard_error"] < 0.002
     assert not told[1]["fits"] and told[1]["value"] > 0.05
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\ninput: {path: made.npy, calibration: auto, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
-        "first_slant_range: 30 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\nobjects: []\n")
+    write_text(tmp_path, "path: made.npy, calibration: auto", "row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m")
     for command in ["calibrate", "made.npy"], ["run", "scene.yaml", "-o", "out"]:
         (note,) = re.findall("note: (made.npy: the measured grey-level curve does not explain .*)", sonject.done(*command).stderr)
         assert f"{100 * told[1]['value']:.2g} % of its pixels are off" in note and "as input.transfer" in note
@@ -292,9 +290,8 @@ def test_first_returns_are_those_of_the_mirrored_image(sonject, tmp_path):
     for name, places in (("right", "first_slant_range: 0 m"), ("left", f"first_slant_range: 0 m, nadir_column: {COLUMNS - 1}"),
                          ("edge", f"nadir_column: {COLUMNS - 0.5}"), ("mistaken", "first_slant_range: 0 m")):
         file = "right" if name == "right" else "left"
-        (tmp_path / "scene.yaml").write_text(
-            f"sonject: 1\ninput: {{path: {file}.npy, calibration: {file}.yaml, geometry: {{row_spacing: 10 cm, column_spacing: 2 cm, {places}}}}}\n"
-            "sonar: {altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}\nobjects: [{shape: sphere, diameter: 0.4 m}]\n")
+        write_text(tmp_path, f"path: {file}.npy, calibration: {file}.yaml", f"row_spacing: 10 cm, column_spacing: 2 cm, {places}",
+                   "{shape: sphere, diameter: 0.4 m}", "first_return", "frequency: 100 kHz, bandwidth: 37.5 kHz")
         answer = sonject.done("check", "scene.yaml")
         answers[name] = altitude_of(answer.stdout)
         is_noted = "left.yaml found the water column at the image's right edge, and here range grows to the right" in answer.stdout
@@ -307,9 +304,8 @@ def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
     sonject.done("calibrate", "both.npy", "-o", "both.yaml")
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\ninput: {path: both.npy, calibration: both.yaml, geometry: {row_spacing: 5 cm, column_spacing: "
-        "5 cm, side: port}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: first_return}\nobjects: []\n")
+    write_text(tmp_path, "path: both.npy, calibration: both.yaml", "row_spacing: 5 cm, column_spacing: 5 cm, side: port",
+               altitude="first_return")
     columns = numpy.mean(calibrated(sonject, "both.npy")["measured"]["first_return"])
     assert columns == pytest.approx(120, abs=1)
     # measured to the centre of the seabed's first pixel; check prints three digits

@@ -9,7 +9,7 @@ import pytest
 
 import images
 import recordings
-from conftest import assert_refused
+from conftest import assert_refused, write_text
 
 ROWS, COLUMNS = 40, 120
 ALTITUDE, SPACING = 6.0, 30.0 / COLUMNS
@@ -130,20 +130,14 @@ def test_numbers_beyond_single_precision_are_refused(sonject, tmp_path):
         assert_refused(sonject("convert", name, "b.npy"), 3, "row 1, column 2", "float32")
 
 
-IMAGE = """\
-sonject: 1
-input:
-  path: {}
-  geometry: {{row_spacing: 10 cm, column_spacing: 10 cm, side: port, first_slant_range: 15 m}}
-sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.2 m}}
-patch: {{row: 4, column: 10, rows: 32, columns: 60}}
-objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
-"""
+SONAR = "frequency: 600 kHz, bandwidth: 10 kHz, resolution: 0.2 m"
+BALL = "{name: ball, shape: sphere, diameter: 1 m}"
 
 
 def check_injection(sonject, folder, name, before, extension):
     """Asserts that a run changes the input's samples within the patch alone. Returns the command's answer."""
-    (folder / "scene.yaml").write_text(IMAGE.format(name))
+    write_text(folder, f"path: {name}", "row_spacing: 10 cm, column_spacing: 10 cm, side: port, first_slant_range: 15 m", BALL, "6 m",
+               SONAR, "patch: {row: 4, column: 10, rows: 32, columns: 60}")
     answer = sonject.done("run", "scene.yaml", "-o", "out")
     image = folder / "out" / ("image" + extension)
     sonject.done("convert", image, "after.npy")
@@ -246,12 +240,8 @@ def test_ground_range_and_back(sonject, tmp_path, line, sides):
                    "in ground range already")
     assert_refused(sonject("convert", "g.tif", "x.tif", "--row-spacing", 0.1, "--column-spacing",
                            0.25, "--first-range", 7), 3, "says that it is in ground range")
-    scene = tmp_path / "scene.yaml"
-    scene.write_text("sonject: 1\ninput: {path: g.tif, geometry: {row_spacing: 0.1 m, "
-                     "column_spacing: 0.25 m, first_slant_range: 7 m}}\nsonar: {frequency: 600 kHz, "
-                     "bandwidth: 10 kHz, altitude: 6 m, resolution: 0.2 m}\n"
-                     "objects: [{name: b, shape: sphere, diameter: 1 m}]\n")
-    assert_refused(sonject("run", scene, "-o", "out"), 3, "ground range",
+    write_text(tmp_path, "path: g.tif", "row_spacing: 0.1 m, column_spacing: 0.25 m, first_slant_range: 7 m", BALL, "6 m", SONAR)
+    assert_refused(sonject("run", "scene.yaml", "-o", "out"), 3, "ground range",
                    "sonject convert --range-axis slant")
 
 

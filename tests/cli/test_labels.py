@@ -13,7 +13,7 @@ import pytest
 import images
 import recordings
 from measured_images import read_png
-from conftest import COMMAND, COLUMNS, ROWS, assert_refused
+from conftest import COMMAND, COLUMNS, ROWS, assert_refused, write_text
 
 # Square boxes would hide swapped rows and columns. The second target stands in the first one's shadow.
 # The third target's shadow leaves the patch. The fourth target is buried.
@@ -303,15 +303,9 @@ def test_contacts_lie_abeam_of_the_recorded_track(sonject, tmp_path, case):
             packet[212:216] = numpy.float32(recorded).tobytes()
         data += bytes(packet)
     (tmp_path / "line.xtf").write_bytes(data)
-    (tmp_path / "scene.yaml").write_text(
-        "sonject: 1\n"
-        "input:\n"
-        "  path: line.xtf\n"
-        f"  geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m, "
-        f"side: {side}}}\n"
-        "patch: {row: 10, column: 60, rows: 40, columns: 120}\n"
-        "sonar: {frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}\n"
-        "objects: [{shape: sphere, diameter: 0.6 m, position: {row: 30, column: 100}}]\n")
+    write_text(tmp_path, "path: line.xtf", f"row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m, side: {side}",
+               "{shape: sphere, diameter: 0.6 m, position: {row: 30, column: 100}}", "6 m",
+               "frequency: 600 kHz, bandwidth: 10 kHz, resolution: 0.1 m", "patch: {row: 10, column: 60, rows: 40, columns: 120}")
     sonject.done("run", "scene.yaml", "-o", "out")
     truth = read_json(tmp_path / "out" / "truth.json")
     position = truth["objects"][0]["position"]

@@ -7,7 +7,7 @@ import numpy
 import pytest
 
 import recordings
-from conftest import assert_refused
+from conftest import assert_refused, write_text
 from images import png_bytes, read_tiff, tiff_bytes
 from measured_images import read_png
 
@@ -25,11 +25,8 @@ def write(path, pixels):
 
 
 def write_scene(folder, source, ball, first_range=30, more=""):
-    """Writes a scene with a sphere. source: the keys of its image."""
-    (folder / "scene.yaml").write_text(
-        f"sonject: 1\ninput: {{{source}, geometry: {{row_spacing: 2.5 cm, column_spacing: 2.5 cm, "
-        f"first_slant_range: {first_range} m}}}}\nsonar: {{frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}}\n"
-        f"objects: [{{name: ball, shape: sphere, {ball}}}]\n{more}")
+    write_text(folder, source, f"row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: {first_range} m",
+               f"{{name: ball, shape: sphere, {ball}}}", more=more)
 
 
 def told(answer):

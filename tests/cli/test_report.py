@@ -8,7 +8,7 @@ import numpy
 import pytest
 
 import images
-from conftest import page_data
+from conftest import page_data, write_text
 from measured_images import read_png
 from test_campaign import CAMPAIGN, SCENE
 from test_run import DEMO
@@ -98,11 +98,9 @@ def test_the_page_knows_the_panels_of_the_quicklook(sonject, scene, tmp_path, sw
 
 
 def test_the_quicklook_shows_what_changed_and_as_much_around_it(sonject, tmp_path):
-    (tmp_path / "wide.yaml").write_text(
-        "sonject: 1\ninput: {synthetic: {rows: 300, columns: 500}, geometry: {row_spacing: 5 cm, column_spacing: 5 cm, "
-        "first_slant_range: 40 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
-        "objects: [{shape: sphere, diameter: 0.4 m, position: {row: 40, column: 300}}]\n")
-    sonject.done("run", "wide.yaml", "-o", "wide")
+    write_text(tmp_path, "synthetic: {rows: 300, columns: 500}", "row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 40 m",
+               "{shape: sphere, diameter: 0.4 m, position: {row: 40, column: 300}}")
+    sonject.done("run", "scene.yaml", "-o", "wide")
     rows, columns = numpy.nonzero(read_png(tmp_path / "wide" / "influence.png"))
     look = page_data(tmp_path / "wide")["quicklook"]
     margin = max(numpy.ptp(rows), numpy.ptp(columns)) + 1
@@ -111,7 +109,7 @@ def test_the_quicklook_shows_what_changed_and_as_much_around_it(sonject, tmp_pat
     assert [look["row"] + look["rows"], look["column"] + look["columns"]] == [
         min(300, rows.max() + 1 + margin), min(500, columns.max() + 1 + margin)]
     assert look["first_along_track_m"] == pytest.approx(0.05 * first[0]) and look["first_range_m"] == pytest.approx(40 + 0.05 * first[1])
-    sonject.done("run", "wide.yaml", "-o", "none", "--set", "objects=[]")
+    sonject.done("run", "scene.yaml", "-o", "none", "--set", "objects=[]")
     assert page_data(tmp_path / "none")["quicklook"]["rows"] == 300
 
 

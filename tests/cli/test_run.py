@@ -17,7 +17,7 @@ import numpy
 import pytest
 
 import images
-from conftest import COLUMNS, COMMAND, ROWS, assert_refused, files_below
+from conftest import COLUMNS, COMMAND, ROWS, assert_refused, files_below, write_text
 
 RESULTS = {
     "image.tif",
@@ -428,12 +428,11 @@ def test_ground_range_is_drawn_of_what_tells_its_slant_range(sonject, tmp_path):
 
 def test_a_geometry_that_is_not_the_files_is_told(sonject, tmp_path):
     sonject.done("seabed", "-o", "swath.tif", "--rows=64", "--columns=96", "--row-spacing=5cm", "--column-spacing=5cm", "--first-range=20m")
-    scene = ("sonject: 1\ninput: {path: swath.tif, geometry: %s}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 8 m}\n"
-             "objects: [{shape: sphere, diameter: 40 cm}]\n")
-    for geometry, is_told in (("from_file", False), ("{row_spacing: 5.1 cm, column_spacing: 5 cm, first_slant_range: 20 m}", False),
-                              ("{row_spacing: 10 cm, column_spacing: 5 cm, first_slant_range: 20 m}", True),
-                              ("{row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m}", True)):
-        (tmp_path / "scene.yaml").write_text(scene % geometry)
-        for told in (sonject.done("check", "scene.yaml").stdout,
-                     sonject.done("run", "scene.yaml", "-o", "out", "--overwrite").stderr):
+    write_text(tmp_path, "path: swath.tif", "row_spacing: 5.1 cm, column_spacing: 5 cm, first_slant_range: 20 m",
+               "{shape: sphere, diameter: 40 cm}", "8 m")
+    for changed, is_told in (("=from_file", False), (".row_spacing=5.1 cm", False), (".row_spacing=10 cm", True),
+                             ("={row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 30 m}", True)):
+        setting = ["--set", "input.geometry" + changed]
+        for told in (sonject.done("check", "scene.yaml", *setting).stdout,
+                     sonject.done("run", "scene.yaml", "-o", "out", "--overwrite", *setting).stderr):
             assert ("swath.tif tells other spacings and ranges than the scene" in told) == is_told

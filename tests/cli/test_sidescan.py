@@ -9,7 +9,7 @@ import numpy
 import pytest
 
 import images
-from conftest import assert_refused
+from conftest import assert_refused, write_text
 from measured_images import measured, read_png, read_xtf
 
 ROWS, COLUMNS = 60, 200
@@ -520,8 +520,7 @@ objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 3
 
 @pytest.mark.parametrize("side", ["port", "starboard"])
 def test_check_tells_the_images_rows(sonject, tmp_path, side):
-    (tmp_path / "scene.yaml").write_text(
-        f"sonject: 1\ninput: {{synthetic: {{rows: 100, columns: 128}}, geometry: {{row_spacing: 5 cm, side: {side}, "
-        "column_spacing: 5 cm, first_slant_range: 20 m}}\nsonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 5 m}\n"
-        "objects: [{shape: sphere, diameter: 40 cm, position: {row: 20, column: 60}}]\n")
+    write_text(tmp_path, "synthetic: {rows: 100, columns: 128}",
+               f"row_spacing: 5 cm, side: {side}, column_spacing: 5 cm, first_slant_range: 20 m",
+               "{shape: sphere, diameter: 40 cm, position: {row: 20, column: 60}}", "5 m")
     assert "(sphere): row 20.0, slant range" in sonject.done("check", "scene.yaml").stdout
