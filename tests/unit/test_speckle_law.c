@@ -53,56 +53,45 @@ TEST(one_look_is_exponential)
     }
 }
 
-/* The waterfall has two sides, 20 dB over the water from a column on that changes by row. */
-TEST(a_nadir_lies_between_both_first_returns)
+/* Finds the first returns of a waterfall of two sides, 60 rows high. The water reaches `first`
+ * columns from the nadir, and one more in every second row. It is 20 dB under the seabed or, in
+ * speckle, nearly black: grey levels linear in amplitude, which are 0 to 3 there. */
+static void find_in_waterfall(int columns, int nadir, int first, bool has_speckle,
+                              struct first_returns *returns)
 {
-    enum {
-        ROWS = 60,
-        COLUMNS = 400,
-        NADIR = 190
-    };
     struct report report = {.host = NULL};
-    struct first_returns returns;
-    float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
-    for (int row = 0; row < ROWS; row++)
-        for (int column = 0; column < COLUMNS; column++)
-            intensity[row * COLUMNS + column] = abs(column - NADIR) < 60 + row / 2 ? 0.01f : 1.0f;
-    assert_int_equal(first_returns_find(&returns, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(returns.sides, WATER_BETWEEN);
-    assert_true(fabs(returns.nadir_column - NADIR) <= 0.5);
-    for (int row = 3; row < ROWS - 3; row++)
-        assert_true(fabs(returns.columns[row] - (60 + row / 2) + 0.5) <= 1.0);
-    const struct water_place water = {10, NADIR + 30, 16, 16}, seabed = {10, NADIR + 120, 16, 16};
-    assert_true(first_returns_cover(&returns, &water, COLUMNS));
-    assert_false(first_returns_cover(&returns, &seabed, COLUMNS));
-    first_returns_clear(&returns);
+    uint64_t seed = 1;
+    float *intensity = allocate_array(60, (size_t)columns * sizeof *intensity);
+    for (int i = 0; i < 60 * columns; i++) {
+        const bool is_water = abs(i % columns - nadir) < first + i / columns / 2;
+        const double u = ((double)(next_random(&seed) >> 11) + 0.5) * 0x1p-53;
+        const double grey = round((is_water ? 0.8 : 30.0) * sqrt(-log(u)));
+        intensity[i] = has_speckle ? (float)(grey * grey) : is_water ? 0.01f : 1.0f;
+    }
+    EXPECT_OK(&report, first_returns_find(returns, &report, intensity, 60, (size_t)columns));
+    assert_int_equal(returns->sides, WATER_BETWEEN);
     free(intensity);
 }
 
-/* The same in speckle, as grey levels linear in amplitude, which are 0 to 3 in the water. */
+TEST(a_nadir_lies_between_both_first_returns)
+{
+    struct first_returns returns;
+    find_in_waterfall(400, 190, 60, false, &returns);
+    assert_true(fabs(returns.nadir_column - 190) <= 0.5);
+    for (int row = 3; row < 60 - 3; row++)
+        assert_true(fabs(returns.columns[row] - (60 + row / 2) + 0.5) <= 1.0);
+    const struct water_place water = {10, 190 + 30, 16, 16}, seabed = {10, 190 + 120, 16, 16};
+    assert_true(first_returns_cover(&returns, &water, 400));
+    assert_false(first_returns_cover(&returns, &seabed, 400));
+    first_returns_clear(&returns);
+}
+
 TEST(a_nadir_is_found_where_the_water_is_nearly_black)
 {
-    enum {
-        ROWS = 60,
-        COLUMNS = 1000,
-        NADIR = 480
-    };
-    struct report report = {.host = NULL};
     struct first_returns returns;
-    uint64_t seed = 1;
-    float *intensity = allocate_array(ROWS, COLUMNS * sizeof *intensity);
-    for (int row = 0; row < ROWS; row++)
-        for (int column = 0; column < COLUMNS; column++) {
-            const double u = ((double)(next_random(&seed) >> 11) + 0.5) * 0x1p-53;
-            const double mean = abs(column - NADIR) < 250 + row / 2 ? 0.8 : 30.0;
-            const double grey = round(mean * sqrt(-log(u)));
-            intensity[row * COLUMNS + column] = (float)(grey * grey);
-        }
-    assert_int_equal(first_returns_find(&returns, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
-    assert_int_equal(returns.sides, WATER_BETWEEN);
-    assert_true(fabs(returns.nadir_column - NADIR) <= 1.0);
+    find_in_waterfall(1000, 480, 250, true, &returns);
+    assert_true(fabs(returns.nadir_column - 480) <= 1.0);
     first_returns_clear(&returns);
-    free(intensity);
 }
 
 TEST_PROGRAM(NULL, NULL)
