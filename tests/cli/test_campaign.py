@@ -326,14 +326,6 @@ def test_a_run_says_once_which_images_validate_without_a_split_of_theirs(command
     assert len(notes) == (told is not None) and all(uses in note for note in notes)
 
 
-def test_images_that_cut_what_they_show_are_noted(command):
-    """One of 10 images of 64 columns cuts its shadow, which `whole` does not note. With 16 columns most images do."""
-    done = command("campaign", "campaign.yaml", "-o", "narrow", *sets("empty=0", "images=4", "chip={rows: 64, columns: 16}"))
-    assert done.returncode == 0, done.stderr
-    cut = int(re.search(r"note: (\d) of 4 images have an object whose highlight or shadow is cut by the image's edge", done.stderr)[1])
-    assert cut > 1
-
-
 def test_croissant_lists_files_and_records(whole):
     """Further rules of mlcroissant are not tested here. They were tried: it finds no error and reads all records."""
     card = json.loads((whole / "croissant.json").read_text())
