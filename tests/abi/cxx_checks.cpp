@@ -19,6 +19,20 @@ static void expect(bool is_good, const char *what)
     failures += !is_good;
 }
 
+/* Expects work to throw an error of this status, whose message has the words. */
+template <typename Work>
+static void expect_error(const char *what, sonject_status status, const char *words, Work work)
+{
+    try {
+        work();
+        expect(false, what);
+    } catch (const sonject::error &error) {
+        expect(error.status() == status &&
+                   std::string(error.what()).find(words) != std::string::npos,
+               what);
+    }
+}
+
 static sonject::scene scene_with_ball(const sonject::context &context)
 {
     sonject::scene scene = sonject::scene_of_text(
@@ -34,14 +48,8 @@ static sonject::scene scene_with_ball(const sonject::context &context)
 static void check_errors(const sonject::context &context)
 {
     sonject::scene scene = scene_with_ball(context);
-    try {
-        scene.set("sonar.altitud", 3.0);
-        expect(false, "unknown keys throw");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_INPUT, "the status is in the exception");
-        expect(std::string(error.what()).find("'altitude'") != std::string::npos,
-               "and the library's message");
-    }
+    expect_error("unknown keys throw", SONJECT_ERROR_INPUT, "'altitude'",
+                 [&] { scene.set("sonar.altitud", 3.0); });
     scene.set("sonar.altitude", 0.1);
     expect(scene.text().find("0.1000000000000000") != std::string::npos, "numbers keep digits");
     expect(std::stod(scene.get("sonar.altitude")) == 0.1, "what was set is read back");
@@ -56,23 +64,12 @@ static void check_errors(const sonject::context &context)
                std::string(sonject_context_message(context.get())).find("count") == 0,
            "the message is of the last failure");
     scene.set("sonar.altitude", -1.0);
-    try {
-        scene.object_count();
-        expect(false, "bad values throw where the scene is used");
-    } catch (const sonject::error &error) {
-        expect(std::string(error.what()).find("set sonar.altitude: ") == 0, "and tell the key");
-    }
-    try {
-        sonject::scene missing(context, "there/is/none.yaml");
-        expect(false, "missing scene files throw");
-    } catch (const sonject::error &) {
-    }
-    try {
-        scene.set("sonar.altitude", std::string("10 m\0 or so", 11));
-        expect(false, "texts that C would cut throw");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_ARGUMENT, "as arguments");
-    }
+    expect_error("bad values throw where the scene is used", SONJECT_ERROR_INPUT,
+                 "set sonar.altitude: ", [&] { scene.object_count(); });
+    expect_error("missing scene files throw", SONJECT_ERROR_INPUT, "there/is/none.yaml",
+                 [&] { sonject::scene missing(context, "there/is/none.yaml"); });
+    expect_error("texts that C would cut throw", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { scene.set("sonar.altitude", std::string("10 m\0 or so", 11)); });
     expect(sonject::keys(context).find("sonar.altitude") != std::string::npos, "keys are listed");
     expect(sonject::keys(context, SONJECT_KEYS_OF_CAMPAIGNS).find("chip.spread") !=
                std::string::npos,
@@ -100,19 +97,13 @@ static void check_transfers(const sonject::context &context)
     for (std::size_t i = 0; i < grey.size(); i++)
         is_kept = is_kept && (changed[i] != 0 || image[i] == grey[i]);
     expect(is_kept, "an image of grey levels has changed, but where the mask says so alone");
-    try {
-        result.image();
-        expect(false, "an image of grey levels is none of floats");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_ARGUMENT, "and says so");
-    }
-    try {
-        sonject::inject(scene, {grey.data(), 64, 80, static_cast<const char *>(nullptr)});
-        expect(false, "grey levels without a transfer function throw");
-    } catch (const sonject::error &error) {
-        expect(std::string(error.what()).find("need their transfer function") != std::string::npos,
-               "and the message tells");
-    }
+    expect_error("an image of grey levels is none of floats", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { result.image(); });
+    expect_error(
+        "grey levels without a transfer function throw", SONJECT_ERROR_ARGUMENT,
+        "need their transfer function", [&] {
+            sonject::inject(scene, {grey.data(), 64, 80, static_cast<const char *>(nullptr)});
+        });
 }
 
 static void check_results(const sonject::context &context)
@@ -131,11 +122,8 @@ static void check_results(const sonject::context &context)
     expect(result.object_count() == 1 && result.object(0).is_visible == 1, "the truth");
     expect(result.statistics().rays > 0, "the statistics");
     std::vector<float> small(3);
-    try {
-        result.layer<float>(SONJECT_LAYER_ENERGY, small);
-        expect(false, "wrong sizes throw");
-    } catch (const sonject::error &) {
-    }
+    expect_error("wrong sizes throw", SONJECT_ERROR_ARGUMENT, "bytes",
+                 [&] { result.layer<float>(SONJECT_LAYER_ENERGY, small); });
 }
 
 /* Replaces a host's threads and runs the task on the caller's thread alone. */
@@ -171,12 +159,8 @@ static void check_tables(const sonject::context &context)
               "{unit: m, row_spacing: 5, column_spacing: 5, first_ground_range: 20}");
     scene.set_table("seabed.relief[0].heights.file", "", heights, 3);
     expect(scene.object_count() == 1, "tables are taken");
-    try {
-        scene.set_table("sonar.motion.file", "along_track_m, sway_m", odd);
-        expect(false, "tables of other sizes throw");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_ARGUMENT, "as bad arguments");
-    }
+    expect_error("tables of other sizes throw", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { scene.set_table("sonar.motion.file", "along_track_m, sway_m", odd); });
 }
 
 static void check_elements(const sonject::context &context)
@@ -204,12 +188,10 @@ static void check_measures(const sonject::context &context)
     const sonject_measurement told = sonject::measure(context, {image.data(), 64, 64});
     expect(told.amplitude_contrast > 0.4 && told.amplitude_contrast < 0.7,
            "the contrast of uniform amplitudes, 1 / sqrt(3)");
-    try {
-        const std::vector<std::uint8_t> mask(3);
+    const std::vector<std::uint8_t> mask(3);
+    expect_error("masks of another size throw", SONJECT_ERROR_ARGUMENT, "", [&] {
         sonject::measure(context, {image.data(), 64, 64}, mask);
-        expect(false, "masks of another size throw");
-    } catch (const sonject::error &) {
-    }
+    });
     expect(sonject::measure_contact(context, {image.data(), 64, 64}, nullptr, 0.1, 0.1).seabed_db <
                0.0,
            "the seabed's level");
@@ -228,31 +210,21 @@ static void check_files(const sonject::context &context)
     expect(sonject::bands(context, "bands.yaml") == both, "bands are listed");
     expect(sonject::bands(context, "bands.yaml", {"band=low"}).empty(), "and chosen");
     expect(sonject::scene(context, "bands.yaml", {"band=high"}).object_count() == 0, "and read");
-    try {
-        auto forming = sonject::defaults<sonject_form_params>();
-        forming.file = "bands.yaml";
-        forming.folder = "formed";
-        sonject::form(context, forming);
-        expect(false, "what holds no impulses throws");
-    } catch (const sonject::error &) {
-    }
-    try {
-        auto merging = sonject::defaults<sonject_merge_params>();
-        merging.folder = "merged";
-        sonject::merge(context, merging);
-        expect(false, "what holds no shards throws");
-    } catch (const sonject::error &error) {
-        expect(std::string(error.what()).find("shards") != std::string::npos, "and says so");
-    }
+    auto forming = sonject::defaults<sonject_form_params>();
+    forming.file = "bands.yaml";
+    forming.folder = "formed";
+    expect_error("what holds no impulses throws", SONJECT_ERROR_INPUT, "bands.yaml",
+                 [&] { sonject::form(context, forming); });
+    auto merging = sonject::defaults<sonject_merge_params>();
+    merging.folder = "merged";
+    expect_error("what holds no shards throws", SONJECT_ERROR_INPUT, "shards",
+                 [&] { sonject::merge(context, merging); });
     auto half = sonject::defaults<sonject_run_params>();
     half.folder = "shared";
     half.shard_index = 3;
     half.shard_count = 2;
-    try {
-        sonject::scene(context, "bands.yaml", {"band=low"}).run(half);
-        expect(false, "a third half throws");
-    } catch (const sonject::error &) {
-    }
+    expect_error("a third half throws", SONJECT_ERROR_ARGUMENT, "shard",
+                 [&] { sonject::scene(context, "bands.yaml", {"band=low"}).run(half); });
 }
 
 /* The transfer function of a file is stated as in scenes. */
@@ -269,12 +241,8 @@ static void check_transfer(const sonject::context &context)
     auto measuring = sonject::defaults<sonject_measure_params>();
     measuring.image = "swath.tif";
     const sonject_measurement plain = sonject::measure(context, measuring);
-    try {
-        sonject::measure_contacts(context, measuring);
-        expect(false, "contacts need boxes");
-    } catch (const sonject::error &error) {
-        expect(error.status() == SONJECT_ERROR_ARGUMENT, "boxes are asked for");
-    }
+    expect_error("contacts need boxes", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { sonject::measure_contacts(context, measuring); });
     const sonject_box box = {0, 0, 8, 8};
     measuring.boxes = &box;
     measuring.box_count = 1;
@@ -285,38 +253,25 @@ static void check_transfer(const sonject::context &context)
                     plain.intensity_contrast) > 0.1,
            "a transfer counts");
     measuring.transfer = "{kind: gamma, parameter: 0}";
-    int refused = 0;
-    for (int number = 0; number < 2; number++)
-        try {
-            if (number == 0)
-                sonject::measure(context, measuring);
-            else
-                sonject::measure_contacts(context, measuring);
-        } catch (const sonject::error &error) {
-            refused += error.status() == SONJECT_ERROR_INPUT;
-        }
-    expect(refused == 2, "and is checked");
+    expect_error("a transfer is checked", SONJECT_ERROR_INPUT, "",
+                 [&] { sonject::measure(context, measuring); });
+    expect_error("for contacts, too", SONJECT_ERROR_INPUT, "",
+                 [&] { sonject::measure_contacts(context, measuring); });
     const std::vector<std::uint8_t> mask(64 * 64, 1);
     const std::vector<float> amplitudes(64 * 64, 0.1F);
     auto pixels = sonject::defaults<sonject_pixels>();
     pixels.data = amplitudes.data();
     pixels.rows = pixels.columns = 64;
-    refused = 0;
-    for (int number = 0; number < 2; number++)
-        try {
-            auto mixed = sonject::defaults<sonject_measure_params>();
-            if (number == 0) {
-                mixed.image = "swath.tif";
-                mixed.labels_mask = mask.data();
-            } else {
-                mixed.pixels = &pixels;
-                mixed.transfer = "{kind: decibel, parameter: 1}";
-            }
-            sonject::measure(context, mixed);
-        } catch (const sonject::error &error) {
-            refused += error.status() == SONJECT_ERROR_ARGUMENT;
-        }
-    expect(refused == 2, "a mask of pixels is not of a file, a file's transfer not of pixels");
+    auto masked = sonject::defaults<sonject_measure_params>();
+    masked.image = "swath.tif";
+    masked.labels_mask = mask.data();
+    expect_error("a mask of pixels is not of a file", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { sonject::measure(context, masked); });
+    auto curved = sonject::defaults<sonject_measure_params>();
+    curved.pixels = &pixels;
+    curved.transfer = "{kind: decibel, parameter: 1}";
+    expect_error("a file's transfer is not of pixels", SONJECT_ERROR_ARGUMENT, "",
+                 [&] { sonject::measure(context, curved); });
 }
 
 static void check_progress(const sonject::context &context)
@@ -350,13 +305,9 @@ static void check_campaigns(const sonject::context &context)
     fit.struct_size = sizeof fit;
     fit.contacts = "contacts.csv";
     fit.fitted = "fitted.yaml";
-    try {
-        sonject::fit_campaign(context, "no/campaign.yaml", fit);
-        expect(false, "a campaign that is not there is not fitted");
-    } catch (const sonject::error &error) {
-        expect(std::string(error.what()).find("no/campaign.yaml") != std::string::npos,
-               "and its name is told");
-    }
+    expect_error("a campaign that is not there is not fitted", SONJECT_ERROR_INPUT,
+                 "no/campaign.yaml",
+                 [&] { sonject::fit_campaign(context, "no/campaign.yaml", fit); });
 }
 
 int main()
