@@ -57,6 +57,15 @@ static inline uint64_t next_random(uint64_t *state)
     return *state;
 }
 
+/* Returns zeroed memory for count elements of size bytes, for free(). */
+static inline void *zeroed(size_t count, size_t size)
+{
+    void *memory = calloc(count, size);
+    if (!memory) /* compilers do not know that a failed assertion does not return */
+        abort();
+    return memory;
+}
+
 /* Fails the test with the report's message if the call does not succeed. */
 #define EXPECT_OK(report, call)                                                                    \
     do {                                                                                           \

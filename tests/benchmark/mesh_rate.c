@@ -264,8 +264,7 @@ struct bench_set {
 static int compare(struct bench_set *set, const char *name, bool is_coherent, const float *input,
                    float *output, uint32_t rays)
 {
-    float *native = calloc(rays, PROBE_OUTPUTS * sizeof *native);
-    assert_non_null(native);
+    float *native = zeroed(rays, PROBE_OUTPUTS * sizeof *native);
     const double device_s = probe_device_run(&set->probe, "nearest", input, output, rays, REPEATS);
     struct rays work = {&set->mesh, NULL, is_coherent, input, native, rays};
     const double native_s = time_rays(&work, set->threads);
@@ -364,9 +363,8 @@ int main(void)
 {
     static struct bench_set set;
     const uint32_t rays = SIDE * SIDE;
-    float *input = calloc(rays, PROBE_INPUTS * sizeof *input);
-    float *output = calloc(rays, PROBE_OUTPUTS * sizeof *output);
-    assert_true(input && output);
+    float *input = zeroed(rays, PROBE_INPUTS * sizeof *input);
+    float *output = zeroed(rays, PROBE_OUTPUTS * sizeof *output);
     set_up(&set);
     lay_fan(input, rays);
     int differs = compare(&set, "primary", true, input, output, rays);

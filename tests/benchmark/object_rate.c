@@ -81,8 +81,7 @@ static double ns_of_rough_rays(struct bench *bench)
     const double start = seconds_of(bench);
     EXPECT_OK(&bench->report, rough_trace_begin(&trace, tracer, NULL));
     const struct span strips = {trace.grid.strips.first, trace.chunk};
-    float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
-    assert_non_null(energy);
+    float *energy = zeroed(line_grid_cells(&trace.grid), sizeof *energy);
     EXPECT_OK(&bench->report, rough_trace_strips(&trace, tracer, strips, energy));
     const double taken = seconds_of(bench) - start;
     free(energy);

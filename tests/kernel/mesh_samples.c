@@ -21,10 +21,8 @@ void sample_direction(double direction[3])
 static void reserve(struct mesh_sample *sample, size_t vertices, size_t triangles)
 {
     memset(sample, 0, sizeof *sample);
-    sample->positions = calloc(vertices, 3 * sizeof *sample->positions);
-    sample->corners = calloc(triangles, 3 * sizeof *sample->corners);
-    if (!sample->positions || !sample->corners)
-        abort();
+    sample->positions = zeroed(vertices, 3 * sizeof *sample->positions);
+    sample->corners = zeroed(triangles, 3 * sizeof *sample->corners);
 }
 
 void sample_clear(struct mesh_sample *sample)

@@ -119,8 +119,7 @@ static void place_crowd(struct bench *bench)
 
 static void place_rings(struct bench *bench)
 {
-    bench->scene.meshes = calloc(2, sizeof *bench->scene.meshes);
-    assert_non_null(bench->scene.meshes);
+    bench->scene.meshes = zeroed(2, sizeof *bench->scene.meshes);
     for (uint32_t i = 0; i < 2; i++) {
         struct mesh_sample ring;
         struct mesh_options options;
@@ -319,9 +318,8 @@ static struct tallies tallies_of(const struct trace *trace, const struct subject
     tallies.count = (size_t)trace->strips.count * trace->line;
     tallies.count *= subject->part == CHAINS ? trace->chains.orders : 1;
     tallies.tile_count = subject->part == ROUGH ? trace->rough.tile_elements : 0;
-    tallies.sums = calloc(tallies.count, sizeof(int64_t));
-    tallies.tiles = calloc(tallies.tile_count + 1, sizeof(int64_t));
-    assert_true(tallies.sums && tallies.tiles);
+    tallies.sums = zeroed(tallies.count, sizeof(int64_t));
+    tallies.tiles = zeroed(tallies.tile_count + 1, sizeof(int64_t));
     return tallies;
 }
 
@@ -380,8 +378,7 @@ static void run_strips(struct trace *trace, struct bench *bench, const struct su
 {
     struct tracer *tracer = &bench->tracer;
     const size_t count = (size_t)strips.count * trace->line;
-    float *found = calloc(count, sizeof *found);
-    assert_non_null(found);
+    float *found = zeroed(count, sizeof *found);
     EXPECT_OK(&bench->report,
               subject->part == CHAINS ? chain_trace_strips(&trace->chains, tracer, fan, strips)
               : subject->part == ROUGH
@@ -566,8 +563,7 @@ static int64_t *all_tiles(struct bench *bench, size_t *elements)
 {
     static struct rough_trace trace;
     EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
-    float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
-    assert_non_null(energy);
+    float *energy = zeroed(line_grid_cells(&trace.grid), sizeof *energy);
     EXPECT_OK(&bench->report,
               rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
     EXPECT_OK(&bench->report, rough_trace_images(&trace, &bench->tracer));

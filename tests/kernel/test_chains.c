@@ -73,8 +73,7 @@ TEST(test_closed_sphere)
     struct chain_record chains;
     struct object_record sphere;
     lay_sphere(&fan, &chains, &sphere, lambert);
-    int64_t *tallies = calloc((size_t)ORDERS * BINS, sizeof *tallies);
-    assert_non_null(tallies);
+    int64_t *tallies = zeroed((size_t)ORDERS * BINS, sizeof *tallies);
     const struct outcome_record outcome = trace_chains_strip(&fan, NULL, &chains, &sphere, NULL,
                                                              NULL, tallies, (float[1]){0.0f}, 0, 0);
     assert_int_equal(outcome.faults, 0);

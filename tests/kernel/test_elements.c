@@ -32,11 +32,10 @@ static float *series_of(struct bench *bench, const sonject_element_layout *layou
                         const float *imaginary_part)
 {
     const struct tracer *tracer = &bench->tracer;
-    float *series = calloc(2 * element_plan_samples(layout), sizeof *series);
+    float *series = zeroed(2 * element_plan_samples(layout), sizeof *series);
     struct impulse_list impulses;
     const struct series_request request = {
         layout, &tracer->view, &tracer->response, &impulses, NULL, NULL, 0.0};
-    assert_non_null(series);
     impulse_list_init(&impulses, &bench->report, tracer->device);
     EXPECT_OK(&bench->report,
               impulse_list_add(&impulses, grid, grid->strips, real_part, imaginary_part));
@@ -130,8 +129,7 @@ TEST(test_delays_and_phases)
     const struct line_grid grid = {7, 26, {11, 1}, {613, 1}};
     const double x = view_x_of_row(&tracer->view, 11.5 / 7.0 - 0.5);
     const double range = view_processor_range(&tracer->view, 613.0 / 26.0);
-    double *expected = calloc(2 * element_plan_samples(&layout), sizeof *expected);
-    assert_non_null(expected);
+    double *expected = zeroed(2 * element_plan_samples(&layout), sizeof *expected);
     float *series = series_of(&bench, &layout, &grid, &one, &none);
     hear_exactly(&layout, &tracer->response, x, range, (double)one, expected);
     for (uint32_t ping = 0; ping < layout.elements.pings; ping++) {

@@ -17,8 +17,7 @@ struct planes {
 
 static struct planes planes_of(size_t count)
 {
-    struct planes planes = {count, {calloc(count, sizeof(float)), calloc(count, sizeof(float))}};
-    assert_true(planes.part[0] && planes.part[1]);
+    struct planes planes = {count, {zeroed(count, sizeof(float)), zeroed(count, sizeof(float))}};
     return planes;
 }
 

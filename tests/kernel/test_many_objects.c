@@ -197,12 +197,11 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     EXPECT_OK(&bench->report, smooth_trace_begin(&trace, tracer, number, NULL));
     const struct span strips = {trace.grid.strips.first, trace.chunk};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
-    float *field = calloc(2 * cells, sizeof *field);
-    int64_t *lines = calloc(2 * cells, sizeof *lines);
+    float *field = zeroed(2 * cells, sizeof *field);
+    int64_t *lines = zeroed(2 * cells, sizeof *lines);
     device_buffer buffer = NULL;
     const struct part_list all = all_parts(tracer);
     struct object_record *records;
-    assert_true(field && lines);
     EXPECT_OK(&bench->report,
               object_records_create(&records, tracer, &all, tracer->placements[number].centre));
     EXPECT_OK(&bench->report, smooth_trace_strips(&trace, tracer, strips, field, field + cells));

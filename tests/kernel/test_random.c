@@ -215,8 +215,7 @@ TEST(test_third_uniform)
 TEST(test_complex_normal)
 {
     const struct random_key key = random_key_of(3, 0, STREAM_SEABED_SPECKLE, 17);
-    double *intensity = malloc(DRAWS * sizeof *intensity);
-    assert_non_null(intensity);
+    double *intensity = zeroed(DRAWS, sizeof *intensity);
     double real_sum = 0.0, imaginary_sum = 0.0, energy = 0.0, energy_squared = 0.0;
     double square_real = 0.0, square_imaginary = 0.0;
     for (uint32_t i = 0; i < DRAWS; i++) {

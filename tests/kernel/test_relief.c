@@ -56,16 +56,14 @@ static void sea_init(struct sea *sea, height_function *height, double step, doub
     relief->row_step_m = relief->column_step_m = step;
     relief->first_x_m = relief->first_y_m = -0.5 * side;
     const size_t points = (size_t)relief->rows * relief->columns;
-    relief->heights = calloc(points, sizeof(float));
-    relief->slopes = calloc(points, 2 * sizeof(float));
-    assert_true(relief->heights && relief->slopes);
+    relief->heights = zeroed(points, sizeof(float));
+    relief->slopes = zeroed(points, 2 * sizeof(float));
     for (uint32_t row = 1; row + 1 < relief->rows; row++)
         for (uint32_t column = 1; column + 1 < relief->columns; column++)
             relief->heights[(size_t)row * relief->columns + column] =
                 (float)height(-0.5 * side + row * step, -0.5 * side + column * step);
     relief_finish(relief);
-    sea->words = calloc(WORDS_HEAD + relief_word_count(relief), sizeof *sea->words);
-    assert_non_null(sea->words);
+    sea->words = zeroed(WORDS_HEAD + relief_word_count(relief), sizeof *sea->words);
     relief_words_init(sea->words + WORDS_HEAD, relief);
     sea->fan.relief_words = WORDS_HEAD;
     sea->fan.relief_x = (float)relief->first_x_m;

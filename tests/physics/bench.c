@@ -175,8 +175,7 @@ void bench_add_tetrahedron(struct bench *bench)
     static const uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     struct mesh_options options;
     mesh_options_init(&options);
-    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
-    assert_non_null(bench->scene.meshes);
+    bench->scene.meshes = zeroed(1, sizeof *bench->scene.meshes);
     bench->scene.mesh_count = 1;
     expect_ok(bench, mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4, corners[0], 4,
                                       &options, &bench->scene.meshes[0]));
@@ -195,8 +194,7 @@ size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer)
 void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
 {
     const size_t bytes = bench_buffer_bytes(bench, buffer);
-    void *copy = malloc(bytes);
-    assert_non_null(copy);
+    void *copy = zeroed(bytes, 1);
     expect_ok(bench, buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
     return copy;
 }

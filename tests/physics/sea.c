@@ -207,8 +207,7 @@ void sea_add_scour(struct sea *sea, double width_m, double depth_m)
 void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const float *heights_m)
 {
     const size_t count = (size_t)grid->rows * grid->columns;
-    float *copy = malloc(count * sizeof *copy); /* freed by the scene */
-    assert_non_null(copy);
+    float *copy = zeroed(count, sizeof *copy); /* freed by the scene */
     memcpy(copy, heights_m, count * sizeof *copy);
     relief_features_take_grid(&sea->bench->scene.relief, grid, copy);
 }

@@ -15,8 +15,7 @@ static void add_glints(struct sea *sea, struct glints *glints, struct line *line
 {
     const struct line_grid *grid = &glints->grid;
     const size_t cells = (size_t)glints->chunk * (size_t)grid->bins.count;
-    float *parts = calloc(2 * cells, sizeof *parts);
-    assert_non_null(parts);
+    float *parts = zeroed(2 * cells, sizeof *parts);
     for (int32_t done = 0; done < grid->strips.count; done += glints->chunk) {
         const int32_t left = grid->strips.count - done;
         const struct span strips = {grid->strips.first + done,
@@ -35,8 +34,7 @@ static void add_multibounce(const struct multibounce *multibounce, struct line *
         const struct multibounce_region *region = &multibounce->regions[i];
         const struct line_grid grid = {.strips = region->strips, .bins = region->bins};
         const size_t cells = line_grid_cells(&grid);
-        float *parts = calloc(2 * cells, sizeof *parts);
-        assert_non_null(parts);
+        float *parts = zeroed(2 * cells, sizeof *parts);
         multibounce_read(multibounce, region, region->strips, parts, parts + cells);
         add_strips(line, first_bin, &grid, region->strips, parts, parts + cells);
         free(parts);
@@ -201,8 +199,7 @@ static void add_chains(struct sea *sea, const struct ranges *ranges,
         EXPECT_OK(&sea->bench->report, chain_trace_strips(&trace, tracer, &fan, fan.strips));
     }
     const size_t cells = line_grid_cells(&trace.grid);
-    float *plane = malloc(cells * sizeof *plane);
-    assert_non_null(plane);
+    float *plane = zeroed(cells, sizeof *plane);
     for (uint32_t p = 0; p < trace.orders; p++) {
         const uint32_t order = trace.first_order - 1 + p;
         double values[CHAIN_RANGES] = {0.0};

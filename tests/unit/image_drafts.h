@@ -212,9 +212,8 @@ static inline void tiff_put_page(TIFF *file, const struct tiff_build *build,
     const uint64_t height = build->block_rows < layout->rows ? build->block_rows : layout->rows;
     const size_t sample = pixel_bytes(layout->type);
     const size_t in_block = build->is_separate ? sample : layout->channels * sample;
-    unsigned char *block = calloc((size_t)(width * height), in_block);
+    unsigned char *block = zeroed((size_t)(width * height), in_block);
     uint32_t number = 0;
-    assert_non_null(block);
     tiff_set_tags(file, build);
     for (uint32_t plane = 0; plane < (build->is_separate ? layout->channels : 1); plane++)
         for (uint64_t row = 0; row < layout->rows; row += height)

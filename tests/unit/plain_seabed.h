@@ -14,8 +14,7 @@ static inline float *make_plain_seabed(uint32_t rows, uint32_t columns, double s
 {
     struct report report = {.host = NULL};
     struct scene scene;
-    float *pixels = calloc((size_t)rows * columns, sizeof *pixels);
-    assert_non_null(pixels);
+    float *pixels = zeroed((size_t)rows * columns, sizeof *pixels);
     scene_init(&scene);
     sonject_synthetic_params *synthetic = &scene.synthetic;
     scene.geometry.first_slant_range_m = 40.0;

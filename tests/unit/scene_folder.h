@@ -172,8 +172,7 @@ static inline char *example_scene(const char *name, size_t *bytes)
     FILE *file = fopen(path, "rb");
     if (!file)
         fail_msg("%s is not there", path);
-    char *text = calloc(65536, 1);
-    assert_non_null(text);
+    char *text = zeroed(65536, 1);
     *bytes = fread(text, 1, 65535, file);
     fclose(file);
     return text;

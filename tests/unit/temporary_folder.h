@@ -97,8 +97,7 @@ static inline unsigned char *bytes_of_stream(FILE *file, size_t *count)
     assert_int_equal(fseek(file, 0, SEEK_END), 0);
     *count = (size_t)ftell(file);
     rewind(file);
-    unsigned char *bytes = calloc(*count + 1, 1);
-    assert_non_null(bytes);
+    unsigned char *bytes = zeroed(*count + 1, 1);
     assert_int_equal(fread(bytes, 1, *count, file), *count);
     fclose(file);
     return bytes;

@@ -176,11 +176,10 @@ TEST(test_small_images)
     for (size_t rows = 1; rows < 40; rows += rows < 8 ? 1 : 7)
         for (size_t columns = 1; columns < 40; columns += columns < 8 ? 1 : 7)
             for (int i = 0; i < 8; i++) {
-                float *pixels = malloc(rows * columns * sizeof *pixels);
+                float *pixels = zeroed(rows * columns, sizeof *pixels);
                 struct contact_image image;
                 struct contact_place place = {{0, 0, rows, columns}, {0, 0, 0, 0}, i % 2 == 0};
                 struct contact_sizes sizes;
-                assert_non_null(pixels);
                 for (size_t k = 0; k < rows * columns; k++)
                     pixels[k] = (float)(draw() < 0.6 ? speckle(1) : i < 4 ? 0.0 : 1e-3);
                 for (int k = 0; k < i; k++)

@@ -69,10 +69,9 @@ CLEAN(test_a_file_is_written_and_read)
     const char *path = file_in("x.json");
     /* longer than what is read at once, and with a 0 in it */
     const size_t length = 200001;
-    char *written = calloc(length, 1);
+    char *written = zeroed(length, 1);
     char *read;
     size_t count;
-    assert_non_null(written);
     for (size_t i = 0; i < length; i++)
         written[i] = (char)(i * 7 % 251);
     EXPECT_OK(&report, file_write_whole(&report, path, "old", 3));

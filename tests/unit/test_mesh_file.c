@@ -204,8 +204,7 @@ TEST(test_formats)
 static sonject_status read_part(enum format format, const char *bytes, size_t count,
                                 struct mesh_soup *soup)
 {
-    char *part = malloc(count + 1);
-    assert_non_null(part);
+    char *part = zeroed(count + 1, 1);
     memcpy(part, bytes, count);
     part[count] = '\0';
     *soup = (struct mesh_soup){.report = &report, .path = draft_names[format]};

@@ -248,10 +248,8 @@ TEST(test_crowded_vertex)
     enum {
         RIM = 100000
     };
-    struct mesh_sample cone = {calloc(RIM + 2, 3 * sizeof(double)),
-                               calloc(2 * RIM, 3 * sizeof(uint32_t)), RIM + 2, 2 * RIM};
-    assert_non_null(cone.positions);
-    assert_non_null(cone.corners);
+    struct mesh_sample cone = {zeroed(RIM + 2, 3 * sizeof(double)),
+                               zeroed(2 * RIM, 3 * sizeof(uint32_t)), RIM + 2, 2 * RIM};
     cone.positions[2] = 1.0;
     for (uint32_t i = 0; i < RIM; i++) {
         const double angle = 2.0 * 3.14159265358979 * i / RIM;

@@ -41,8 +41,7 @@ static void lay_echoes(struct multibounce *multibounce)
 {
     memset(multibounce, 0, sizeof *multibounce);
     multibounce->count = 2;
-    multibounce->sums = calloc(multibounce->count, sizeof *multibounce->sums);
-    assert_non_null(multibounce->sums);
+    multibounce->sums = zeroed(multibounce->count, sizeof *multibounce->sums);
     for (int32_t k = 0; k < 2; k++) {
         const struct line_grid grid = {.strips = {-100, STRIPS + 200},
                                        .bins = {-50 * k, BINS + 100}};
@@ -103,8 +102,7 @@ TEST(test_regions_are_read_whole)
     for (size_t i = 0; i < multibounce.region_count; i++) {
         const struct multibounce_region *region = &multibounce.regions[i];
         const size_t most = 37 * (size_t)region->bins.count;
-        float *parts = malloc(2 * most * sizeof *parts);
-        assert_non_null(parts);
+        float *parts = zeroed(2 * most, sizeof *parts);
         for (int32_t done = 0; done < region->strips.count; done += 37) {
             const int32_t left = region->strips.count - done;
             const struct span strips = {region->strips.first + done, left < 37 ? left : 37};

@@ -71,7 +71,7 @@ static void run_tasks(void *user, uint32_t wanted, sonject_task_function run, vo
 static bool launch_by(struct task_host *by, uint32_t most, size_t items)
 {
     static const size_t rest[2] = {3, 2};
-    int *counts = calloc(items * 6, sizeof *counts), rounding = 0;
+    int *counts = zeroed(items * 6, sizeof *counts), rounding = 0;
     int *rounded = &rounding;
     const size_t global[3] = {items, rest[0], rest[1]};
     const struct kernel_argument arguments[] = {ARGUMENT(counts), ARGUMENT(rounded)};

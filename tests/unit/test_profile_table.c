@@ -140,8 +140,7 @@ CLEAN(test_tables_that_are_wrong)
 
 CLEAN(test_limits)
 {
-    char *text = calloc(PROFILE_BYTES_MAX + 2, 1);
-    assert_non_null(text);
+    char *text = zeroed(PROFILE_BYTES_MAX + 2, 1);
     size_t length = (size_t)sprintf(text, H);
     for (int i = 0; i < PROFILE_SAMPLES_MAX; i++)
         length += (size_t)sprintf(text + length, "%d,1500\n", i);

@@ -24,12 +24,11 @@ static void expect_round_trip(const sonject_transfer_params *transfer, enum pixe
     const size_t count = last_of(type) + 1;
     const size_t at_once = is_one_call ? count : 1;
     const size_t size = pixel_bytes(type);
-    unsigned char *stored = malloc(count * size);
-    unsigned char *back = malloc(count * size);
-    float *amplitude = malloc(count * sizeof *amplitude);
+    unsigned char *stored = zeroed(count, size);
+    unsigned char *back = zeroed(count, size);
+    float *amplitude = zeroed(count, sizeof *amplitude);
     uint64_t clipped = 0;
     size_t bad = 0;
-    assert_true(stored && back && amplitude);
     for (size_t i = 0; i < count; i++)
         assert_true(pixel_store(type, stored, i, (double)i));
     for (size_t i = 0; i < count; i += at_once) {

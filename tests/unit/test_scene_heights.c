@@ -128,8 +128,7 @@ TEST(test_files_that_are_no_heights)
     static const struct raster_layout line = {1, COLUMNS, 1, PIXEL_FLOAT32};
     static const struct raster_layout wide = {2, 16385, 1, PIXEL_UINT8};
     static const struct raster_layout large = {4096, 4097, 1, PIXEL_UINT8};
-    uint8_t *many = calloc(4096, 4097);
-    assert_non_null(many);
+    uint8_t *many = zeroed(4096, 4097);
     const struct {
         const struct raster_layout *layout;
         const void *pixels;

@@ -60,8 +60,7 @@ static sonject_status read_bytes(const char *text, size_t bytes)
         write_scene(text, bytes);
         return read_scene(NULL, 0);
     }
-    char *copy = malloc(bytes + 1);
-    assert_non_null(copy);
+    char *copy = zeroed(bytes + 1, 1);
     memcpy(copy, text, bytes);
     copy[bytes] = 0;
     const struct scene_source source = {.path = folder->file, .text = copy};
@@ -96,9 +95,7 @@ static void expect_saying(const char *text, size_t bytes, const char *part)
 /* Returns head, then middle count times, then tail. The caller frees the text. */
 static char *repeated(const char *head, const char *middle, size_t count, const char *tail)
 {
-    char *text = malloc(strlen(head) + count * strlen(middle) + strlen(tail) + 1);
-    if (!text) /* the compiler does not know that an assertion does not return */
-        abort();
+    char *text = zeroed(strlen(head) + count * strlen(middle) + strlen(tail) + 1, 1);
     char *end = text + sprintf(text, "%s", head);
     for (size_t i = 0; i < count; i++)
         end += sprintf(end, "%s", middle);
@@ -141,9 +138,8 @@ TEST(test_too_many_values)
 
 TEST(test_too_many_keys)
 {
-    char *text = malloc(20000);
+    char *text = zeroed(20000, 1);
     char *end = text;
-    assert_non_null(text);
     for (int i = 0; i < 257; i++)
         end += sprintf(end, "key_%d: 1\n", i);
     expect_saying(text, strlen(text), ":257:1: key_256: has more than 256 keys");

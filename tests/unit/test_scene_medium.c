@@ -185,8 +185,7 @@ TEST(test_what_is_wrong)
 TEST(test_too_many_of_them)
 {
     const size_t capacity = 300000;
-    char *text = calloc(capacity, 1);
-    assert_non_null(text);
+    char *text = zeroed(capacity, 1);
     size_t length = (size_t)sprintf(text, "%s", LAYERS);
     for (int i = 0; i < 4097; i++)
         length += (size_t)sprintf(text + length, "    - {bottom: %d, sound_speed: 1500}\n", i);

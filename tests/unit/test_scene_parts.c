@@ -155,8 +155,7 @@ TEST(test_what_is_refused)
 TEST(test_too_many_parts)
 {
     static const char part[] = "  - {shape: sphere, diameter: 1}\n";
-    char *text = malloc(2000 + 1001 * sizeof part);
-    assert_non_null(text);
+    char *text = zeroed(2000 + 1001 * sizeof part, 1);
     char *end = text + sprintf(text, "%sobjects:\n- parts:\n", BASE);
     for (int i = 0; i < 1000; i++)
         end += sprintf(end, "%s", part);
@@ -268,8 +267,7 @@ TEST(test_scenes_that_name_targets_wrongly)
 TEST(test_large_targets_are_refused)
 {
     const size_t bytes = 1024 * 1024 + 2;
-    char *text = malloc(bytes + 1);
-    assert_non_null(text);
+    char *text = zeroed(bytes + 1, 1);
     memset(text, '#', bytes);
     text[bytes] = 0;
     write_target(text);

@@ -19,8 +19,7 @@ static void expect_near(double value, double expected, double tolerance)
 
 static float *make_map(size_t rows, size_t columns, float value)
 {
-    float *map = calloc(rows * columns, sizeof *map);
-    assert_non_null(map);
+    float *map = zeroed(rows * columns, sizeof *map);
     for (size_t i = 0; i < rows * columns; i++)
         map[i] = value;
     return map;
@@ -86,8 +85,7 @@ static void smooth_slowly(double *line, size_t count, double deviation)
     const double inside = radius * (radius + 1.0) * (2.0 * radius + 1.0) / 3.0;
     const double end = (radius + 1.0) * (radius + 1.0);
     const double weight = (variance * (2.0 * radius + 1.0) - inside) / (2.0 * end - 2.0 * variance);
-    double *from = calloc(count, sizeof *from);
-    assert_non_null(from);
+    double *from = zeroed(count, sizeof *from);
     for (int pass = 0; pass < 3; pass++) {
         memcpy(from, line, count * sizeof *line);
         for (size_t i = 0; i < count; i++) {
@@ -168,10 +166,9 @@ static struct shadow_floor floor_of(const struct made_shadows *made)
 {
     const size_t rows = 320, columns = 360;
     float *intensity = make_map(rows, columns, 0.0f);
-    uint8_t *states = calloc(rows * columns, 1);
+    uint8_t *states = zeroed(rows * columns, 1);
     struct shadow_floor found = {0};
     uint64_t random = 11;
-    assert_non_null(states);
     for (size_t row = 0; row < rows; row++)
         for (size_t i = 0; i < columns; i++) {
             const size_t first = made->is_open ? columns - made->columns : 80 + row / 40 % 3 * 90;

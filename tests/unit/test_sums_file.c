@@ -69,8 +69,7 @@ static bool refuse_all(void *user, uint64_t first, const int64_t *values, size_t
 static void expect_sums(const struct sums_file *file, uint64_t record, const int64_t *values,
                         size_t count, uint64_t runs)
 {
-    struct collected all = {calloc(count, sizeof(int64_t)), 0};
-    assert_non_null(all.values);
+    struct collected all = {zeroed(count, sizeof(int64_t)), 0};
     EXPECT_OK(&report, sums_file_runs(file, &report, record, count, collect, &all));
     assert_memory_equal(all.values, values, count * sizeof *values);
     assert_int_equal(all.runs, runs);
@@ -83,8 +82,7 @@ CLEAN(test_what_is_written_is_read)
     struct sums_head head = head_of(2, 3, 4, 9, 1);
     /* too many to stay in memory */
     const size_t many = ((size_t)33 << 20) / sizeof(int64_t);
-    int64_t *values = calloc(many, sizeof *values);
-    assert_non_null(values);
+    int64_t *values = zeroed(many, sizeof *values);
     for (size_t i = 0; i < many; i++)
         values[i] = (int64_t)i * 7 - 5;
     write_sums(folder->path, head, values, many);
