@@ -52,8 +52,7 @@ static sonject_status use(struct report *report, const char *path, const char *c
     if (status != SONJECT_OK)
         return status;
     status = swath_file_read(report, file, &corner, pixels);
-    if (status == SONJECT_OK)
-        status = swath_file_copy_with_patch(report, file, copy, &corner, pixels, NULL, NULL);
+    THEN(status, swath_file_copy_with_patch(report, file, copy, &corner, pixels, NULL, NULL));
     swath_file_close(&file);
     return status;
 }

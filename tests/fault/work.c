@@ -78,8 +78,7 @@ sonject_status work_do(struct work *work, const struct work_piece *piece)
     sonject_status status = sonject_context_create(&params, &context);
     if (status == SONJECT_OK && piece->has_scene)
         status = sonject_scene_read(context, work->scene, NULL, &scene);
-    if (status == SONJECT_OK)
-        status = piece->act(work, context, scene);
+    THEN(status, piece->act(work, context, scene));
     if (context && status != SONJECT_OK)
         snprintf(work->message, sizeof work->message, "%s", sonject_context_message(context));
     sonject_scene_release(&scene);
@@ -132,10 +131,8 @@ static sonject_status read_scene(struct work *work, sonject_context *context, so
     char *text = NULL, *json = NULL;
     (void)context;
     sonject_status status = sonject_scene_object_count(scene, &count);
-    if (status == SONJECT_OK)
-        status = sonject_scene_text(scene, &text);
-    if (status == SONJECT_OK)
-        status = sonject_scene_get(scene, "objects", &json);
+    THEN(status, sonject_scene_text(scene, &text));
+    THEN(status, sonject_scene_get(scene, "objects", &json));
     work->digest = add_to_digest(work->digest, &count, sizeof count);
     if (json)
         work->digest = add_to_digest(work->digest, json, strlen(json));
@@ -159,8 +156,7 @@ static sonject_status inject(struct work *work, sonject_context *context, sonjec
     patch.kind = SONJECT_PIXELS_UINT16;
     patch.data = pixels;
     patch.transfer = transfer;
-    if (status == SONJECT_OK)
-        status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
+    THEN(status, sonject_inject(context, scene, &patch, NULL, NULL, &result));
     assert_true((status == SONJECT_OK) == (result != NULL));
     if (status == SONJECT_OK) {
         status = sonject_result_layer(result, SONJECT_LAYER_IMAGE, pixels, sizeof pixels);
@@ -217,8 +213,7 @@ static sonject_status make_campaign(struct work *work, sonject_context *context,
                                                 .folder = work->results};
     (void)scene;
     sonject_status status = sonject_campaign_read(context, work->campaign, NULL, &campaign);
-    if (status == SONJECT_OK)
-        status = sonject_campaign_run(context, campaign, &params, NULL, NULL, NULL);
+    THEN(status, sonject_campaign_run(context, campaign, &params, NULL, NULL, NULL));
     sonject_campaign_release(&campaign);
     return status;
 }

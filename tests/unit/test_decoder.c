@@ -66,8 +66,7 @@ static sonject_status use_file(const char *path)
 {
     struct swath_file *file;
     sonject_status status = open_image(path, &file);
-    if (status == SONJECT_OK)
-        status = read_image(file);
+    THEN(status, read_image(file));
     swath_file_close(&file);
     return status;
 }

@@ -380,9 +380,8 @@ static void try_damaged(struct damage *damage, const unsigned char *bytes, size_
         if (region_is_inside(&layout, &patch_region) && layout.channels == 1 &&
             layout.type == PIXEL_UINT8)
             status = swath_file_read(&report, file, &patch_region, pixels);
-        if (status == SONJECT_OK)
-            status = swath_file_copy_with_patch(&report, file, damage->copy, &patch_region,
-                                                damage->patch, NULL, NULL);
+        THEN(status, swath_file_copy_with_patch(&report, file, damage->copy, &patch_region,
+                                                damage->patch, NULL, NULL));
         swath_file_close(&file);
     }
     const bool has_copy = access(damage->copy, F_OK) == 0;

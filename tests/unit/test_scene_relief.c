@@ -32,12 +32,10 @@ static sonject_status lay(struct ground *ground)
     struct scene *scene = &folder->scene;
     memset(ground, 0, sizeof *ground);
     sonject_status status = scene_lay_water(scene, &folder->report, &ground->water);
-    if (status == SONJECT_OK)
-        status = patch_view_init(&ground->view, &folder->report, scene, &ground->water, 0.0, 0.0,
-                                 scene->uniform_rows, scene->uniform_columns);
-    if (status == SONJECT_OK)
-        status =
-            placements_init(&ground->placements, &folder->report, scene, &ground->view, 0.0, 0.0);
+    THEN(status, patch_view_init(&ground->view, &folder->report, scene, &ground->water, 0.0, 0.0,
+                                 scene->uniform_rows, scene->uniform_columns));
+    THEN(status,
+         placements_init(&ground->placements, &folder->report, scene, &ground->view, 0.0, 0.0));
     return status;
 }
 

@@ -375,8 +375,7 @@ static sonject_status add_both(int64_t *total)
         memcpy(total, added, 2 * sizeof *total);
         status = checkpoint_sums(&checkpoint, NULL, SUMS, &added);
     }
-    if (status == SONJECT_OK)
-        status = checkpoint_finish(&checkpoint, &counts);
+    THEN(status, checkpoint_finish(&checkpoint, &counts));
     checkpoint_clear(&checkpoint);
     sums_folder_clear(&all);
     return status;
