@@ -16,7 +16,7 @@ import images
 from cluster import wait_for
 from conftest import COMMAND
 from test_campaign import contents as data_set
-from test_run import RESULTS, contents
+from test_run import contents
 
 SCRIPTS = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "slurm"
 README = (SCRIPTS / "README.md").read_text(encoding="utf-8")

@@ -1,7 +1,6 @@
 """Tests of tracing and image formation as separate stages: a run's files, and images of other responses."""
 
 import json
-import os
 import signal
 import subprocess
 

@@ -1,9 +1,11 @@
 /* Tests statistics of image patches, and contrast, looks, texture and correlation of speckle that
  * is known. */
-#include "plain_seabed.h"
+#include "claims.h"
 
 #include "image/shadow_floor.h"
 #include "image/statistics.h"
+#include "image/synthetic.h"
+#include "scene/scene.h"
 
 #define ROWS    512
 #define COLUMNS 512
@@ -252,11 +254,25 @@ TEST(test_correlation)
     assert_true(correlation(a, up, 0) == 0.0);
 }
 
-/* Adds the intensity of a plain seabed. */
+/* Adds the intensity of a seabed without ripples and patches: nothing but speckle. Responses: a
+ * sinc of row_width pixels, a Gaussian of a -3 dB width of column_width pixels. shape: of the K
+ * distribution; INFINITY: Rayleigh. */
 static void add_seabed(double shape, double row_width, double column_width, uint64_t seed,
                        float *intensity)
 {
-    float *pixels = make_plain_seabed(ROWS, COLUMNS, shape, row_width, column_width, seed);
+    struct scene scene;
+    sonject_synthetic_params *synthetic = &scene.synthetic;
+    float *pixels = zeroed(PIXELS, sizeof *pixels);
+    scene_init(&scene);
+    scene.geometry.first_slant_range_m = 40.0;
+    synthetic->rows = ROWS;
+    synthetic->columns = COLUMNS;
+    synthetic->seed = seed;
+    synthetic->speckle_shape = shape;
+    synthetic->ripple_contrast = 0.0;
+    synthetic->patch_contrast_db = 0.0;
+    EXPECT_OK(&report, synthesise_seabed(&report, synthetic, &scene.geometry, row_width * 0.025,
+                                         column_width * 0.025, pixels));
     for (size_t i = 0; i < PIXELS; i++)
         intensity[i] += pixels[i] * pixels[i];
     free(pixels);

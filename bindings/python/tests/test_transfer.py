@@ -8,7 +8,6 @@ import numpy
 import pytest
 
 import sonject
-from conftest import COLUMNS, ROWS
 
 CURVES = {
     "amplitude": lambda q, v: q,
