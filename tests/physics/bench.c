@@ -4,12 +4,6 @@
 #include "device/opencl/opencl.h"
 #include "mesh_arrays.h"
 
-static void expect_ok(struct bench *bench, sonject_status status)
-{
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-}
-
 const char *bench_device;
 
 /* A device that a bench gave back, with its programs, or NULL, and the bench_device that it is. */
@@ -23,7 +17,7 @@ struct device *bench_open_device(struct bench *bench)
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
     context.device_name = bench_device;
-    expect_ok(bench, device_open(&bench->report, &context, &device));
+    EXPECT_OK(&bench->report, device_open(&bench->report, &context, &device));
     return device;
 }
 
@@ -140,7 +134,7 @@ sonject_object_params *bench_add(struct bench *bench, enum shape_kind shape, dou
     object.material.roughness_m = 0.0;
     object.material.lambert = 0.0;
     assert_true(bench->scene.object_count < SCENE_OBJECTS_MAX);
-    expect_ok(bench, scene_append_object(&bench->scene, &bench->report, &object));
+    EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &object));
     return &bench->scene.objects[bench->scene.object_count - 1];
 }
 
@@ -164,7 +158,8 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
     struct relief_feature feature;
     memset(&feature, 0, sizeof feature);
     feature.kind = kind;
-    expect_ok(bench, relief_features_append(&bench->scene.relief, &bench->report, &feature));
+    EXPECT_OK(&bench->report,
+              relief_features_append(&bench->scene.relief, &bench->report, &feature));
     return &bench->scene.relief.features[bench->scene.relief.count - 1];
 }
 
@@ -177,8 +172,8 @@ void bench_add_tetrahedron(struct bench *bench)
     mesh_options_init(&options);
     bench->scene.meshes = zeroed(1, sizeof *bench->scene.meshes);
     bench->scene.mesh_count = 1;
-    expect_ok(bench, mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4, corners[0], 4,
-                                      &options, &bench->scene.meshes[0]));
+    EXPECT_OK(&bench->report, mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4,
+                                               corners[0], 4, &options, &bench->scene.meshes[0]));
 }
 
 size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer)
@@ -195,7 +190,8 @@ void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
 {
     const size_t bytes = bench_buffer_bytes(bench, buffer);
     void *copy = zeroed(bytes, 1);
-    expect_ok(bench, buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
+    EXPECT_OK(&bench->report,
+              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
     return copy;
 }
 
@@ -216,20 +212,21 @@ void bench_ready(struct bench *bench)
 {
     struct tracer *tracer = &bench->tracer;
     water_clear(&bench->water);
-    expect_ok(bench, scene_lay_water(&bench->scene, &bench->report, &bench->water));
-    expect_ok(bench, patch_view_init(&tracer->view, &bench->report, &bench->scene, &bench->water,
-                                     0.0, 0.0, bench->rows, bench->columns));
+    EXPECT_OK(&bench->report, scene_lay_water(&bench->scene, &bench->report, &bench->water));
+    EXPECT_OK(&bench->report,
+              patch_view_init(&tracer->view, &bench->report, &bench->scene, &bench->water, 0.0, 0.0,
+                              bench->rows, bench->columns));
     placements_clear(&bench->placed);
-    expect_ok(bench, placements_init(&bench->placed, &bench->report, &bench->scene, &tracer->view,
-                                     0.0, 0.0));
+    EXPECT_OK(&bench->report, placements_init(&bench->placed, &bench->report, &bench->scene,
+                                              &tracer->view, 0.0, 0.0));
     bench->placements = bench->placed.parts;
     tracer->placements = bench->placed.parts;
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
     tracer->relief = bench->placed.relief;
-    expect_ok(bench, point_response_of_scene(
-                         &tracer->response, &bench->report, &bench->scene, &tracer->view,
-                         tracer->view.range_ratio * bench->water.straight_speed_mps));
+    EXPECT_OK(&bench->report, point_response_of_scene(
+                                  &tracer->response, &bench->report, &bench->scene, &tracer->view,
+                                  tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
 size_t bench_widths(uint32_t widths[BENCH_WIDTHS])
