@@ -66,12 +66,12 @@ def png_bytes(pixels, description=b"", head=b"tEXtDescription\0"):
     )
 
 
-def read_tiff(path):
-    """Returns the pixels of an uncompressed TIFF in strips, of either byte order."""
-    content = path.read_bytes()
+def tiff_parts(content):
+    """Returns the byte order, the tags and the strips of a TIFF."""
     order = {b"II": "<", b"MM": ">"}[content[:2]]
-    assert struct.unpack_from(order + "H", content, 2) == (42,)
-    (start,) = struct.unpack_from(order + "I", content, 4)
+    version, start = struct.unpack_from(order + "HI", content, 2)
+    if version != 42:
+        raise ValueError("no TIFF")
     (count,) = struct.unpack_from(order + "H", content, start)
     tags = {}
     for index in range(count):
@@ -84,11 +84,14 @@ def read_tiff(path):
             else:
                 value_place = place + 8
             tags[tag] = struct.unpack_from(f"{order}{length}{code}", content, value_place)
+    return order, tags, [content[first : first + size] for first, size in zip(tags[273], tags[279])]
+
+
+def read_tiff(path):
+    """Returns the pixels of an uncompressed TIFF in strips, of either byte order."""
+    order, tags, strips = tiff_parts(path.read_bytes())
     assert tags.get(259, (1,)) == (1,), "the TIFF is compressed"
-    data = b"".join(
-        content[first : first + length] for first, length in zip(tags[273], tags[279])
-    )
     kind = {1: "u", 3: "f"}[tags.get(339, (1,))[0]] + str(tags[258][0] // 8)
     channels = tags.get(277, (1,))[0]
-    pixels = numpy.frombuffer(data, order + kind).reshape(tags[257][0], tags[256][0], channels)
+    pixels = numpy.frombuffer(b"".join(strips), order + kind).reshape(tags[257][0], tags[256][0], channels)
     return pixels[:, :, 0] if channels == 1 else pixels
