@@ -93,11 +93,17 @@ static inline sonject_status read_scene(const char *const *overrides, size_t cou
     return read_scene_file(&folder->report, folder->file, overrides, count, &folder->scene);
 }
 
-static inline void expect_scene_taken(const char *text)
+/* Writes the scene, then reads it. */
+static inline sonject_status read_scene_text(const char *text, const char *const *overrides,
+                                             size_t count)
 {
     write_scene(text, strlen(text));
-    if (read_scene(NULL, 0) != SONJECT_OK)
-        fail_msg("refused: %s", folder->report.message);
+    return read_scene(overrides, count);
+}
+
+static inline void expect_scene_taken(const char *text)
+{
+    EXPECT_OK(&folder->report, read_scene_text(text, NULL, 0));
 }
 
 /* Counts lines by their ends, LF or CR. */
@@ -123,8 +129,7 @@ static inline const char *shape_words(void)
 static inline void expect_scene_refused(const char *text, const char *message)
 {
     char expected[REPORT_CAPACITY] = "";
-    write_scene(text, strlen(text));
-    if (read_scene(NULL, 0) != SONJECT_ERROR_INPUT)
+    if (read_scene_text(text, NULL, 0) != SONJECT_ERROR_INPUT)
         fail_msg("not refused: %s", text);
     for (const char *line = message, *end; *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
@@ -157,8 +162,7 @@ static inline void expect_bad_file(const char *text, const char *key, const char
     char place[TEMPORARY_CAPACITY + 100];
     const char *message = folder->report.message;
     snprintf(place, sizeof place, "%s%s: ", folder->file, key);
-    write_scene(text, strlen(text));
-    assert_int_equal(read_scene(NULL, 0), status);
+    assert_int_equal(read_scene_text(text, NULL, 0), status);
     if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, file_in(name)) ||
         !strstr(message, what) || strchr(message, '\n'))
         fail_msg("'%s' is not '%s... %s ... %s'", message, place, name, what);

@@ -518,8 +518,7 @@ static inline sonject_status read_case(const struct key_case *key, const char *v
         write_override(override, sizeof override, key, value);
         overrides[count++] = override;
     }
-    write_scene(text, strlen(text));
-    return read_scene(overrides, count);
+    return read_scene_text(text, overrides, count);
 }
 
 #endif

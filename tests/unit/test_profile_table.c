@@ -60,8 +60,7 @@ CLEAN(test_heights_rise_however_the_table_runs)
     };
     for (size_t i = 0; i < COUNT(tables); i++) {
         struct profile_table table;
-        if (read_bytes(tables[i].text, strlen(tables[i].text), &table) != SONJECT_OK)
-            fail_msg("%s", report.message);
+        EXPECT_OK(&report, read_bytes(tables[i].text, strlen(tables[i].text), &table));
         profile_table_to_heights(&table, 20.0);
         assert_int_equal(table.count, 3);
         assert_memory_equal(table.positions_m, tables[i].heights, sizeof tables[i].heights);

@@ -11,8 +11,7 @@ static void expect_refused_table(const char *key, const char *table, const char 
     char scene[1200], expected[TEMPORARY_CAPACITY + 300];
     write_file("table.csv", table, strlen(table));
     snprintf(scene, sizeof scene, RESPONSE "  %s\n", key);
-    write_scene(scene, strlen(scene));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(scene, NULL, 0), SONJECT_ERROR_INPUT);
     snprintf(expected, sizeof expected, "%s%s", file_in("table.csv"), message);
     assert_string_equal(folder->report.message, expected);
 }
@@ -74,8 +73,7 @@ TEST(test_hostile_keys)
     for (size_t i = 0; i < COUNT(cases); i++) {
         char scene[1200];
         snprintf(scene, sizeof scene, RESPONSE "  %s\n", cases[i].key);
-        write_scene(scene, strlen(scene));
-        assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+        assert_int_equal(read_scene_text(scene, NULL, 0), SONJECT_ERROR_INPUT);
         if (!strstr(folder->report.message, cases[i].message))
             fail_msg("%s\nnot: %s", folder->report.message, cases[i].message);
     }

@@ -14,8 +14,7 @@ static const char *const high[] = {"band=high"};
 
 TEST(test_a_band_changes_its_keys_alone)
 {
-    write_scene(TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(low, 1), SONJECT_OK);
+    assert_int_equal(read_scene_text(TWO_BANDS, low, 1), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 20e3);
     assert_int_equal(read_scene(high, 1), SONJECT_OK);
@@ -42,16 +41,14 @@ TEST(what_is_set_beats_the_band)
     static const char scene[] = BASE
         "objects: [{shape: sphere, diameter: 1, position: {row: 1, column: 1}}]\n"
         "bands: {one: {objects: [{shape: sphere, diameter: 2, position: {row: 1, column: 1}}]}}\n";
-    write_scene(TWO_BANDS, strlen(TWO_BANDS));
-    assert_int_equal(read_scene(set, COUNT(set)), SONJECT_OK);
+    assert_int_equal(read_scene_text(TWO_BANDS, set, COUNT(set)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 300e3);
     assert_true(folder->scene.sonar.bandwidth_hz == 25e3);
     assert_true(folder->scene.seabed.lambert == 0.1);
     assert_int_equal(read_scene(whole, COUNT(whole)), SONJECT_OK);
     assert_true(folder->scene.sonar.centre_frequency_hz == 90e3);
     assert_true(folder->scene.sonar.altitude_m == 5.0);
-    write_scene(scene, strlen(scene));
-    assert_int_equal(read_scene(own, COUNT(own)), SONJECT_OK);
+    assert_int_equal(read_scene_text(scene, own, COUNT(own)), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 0);
     assert_int_equal(read_scene(within, COUNT(within)), SONJECT_ERROR_INPUT);
     assert_non_null(

@@ -89,8 +89,7 @@ TEST(test_words_and_forms)
                                "objects[0].position={row: 1, column: 2}", "seabed.lambert=-30 dB"};
     const char *back[] = {"sonar.response=rectangular", "injection.noise_floor=estimate",
                           "objects[0].position={along_track: 1, slant_range: 41}"};
-    write_scene(small, strlen(small));
-    assert_int_equal(read_scene(overrides, COUNT(overrides)), SONJECT_OK);
+    assert_int_equal(read_scene_text(small, overrides, COUNT(overrides)), SONJECT_OK);
     assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_TAYLOR);
     assert_int_equal(folder->scene.injection.estimate_noise, 0);
     assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_PIXELS);
@@ -112,9 +111,7 @@ TEST(test_named_materials)
                                  "0.03125}}"};
     sonject_material_params expected;
     const sonject_material_params *material;
-    write_scene(small, strlen(small));
-    if (read_scene(overrides, COUNT(overrides)) != SONJECT_OK)
-        fail_msg("%s", folder->report.message);
+    EXPECT_OK(&folder->report, read_scene_text(small, overrides, COUNT(overrides)));
     assert_true(material_named("concrete", &expected));
     expected.roughness_m = 0.007;
     assert_memory_equal(&folder->scene.objects[0].material, &expected, sizeof expected);
@@ -124,8 +121,7 @@ TEST(test_named_materials)
     assert_true(material->density_ratio == expected.density_ratio);
     assert_true(material->speed_ratio == expected.speed_ratio && material->loss == expected.loss);
     assert_true(fabs(folder->scene.seabed.lambert / 1e-3 - 1.0) < 1e-15); /* rounding of pow */
-    if (read_scene(as_constant, COUNT(as_constant)) != SONJECT_OK)
-        fail_msg("%s", folder->report.message);
+    EXPECT_OK(&folder->report, read_scene(as_constant, COUNT(as_constant)));
     material = &folder->scene.objects[0].material;
     assert_int_equal(material->reflection_kind, SONJECT_REFLECTION_CONSTANT);
     assert_true(material->reflection == 0.75);
@@ -140,8 +136,7 @@ TEST(test_named_materials)
 TEST(test_a_fluid_replaces_a_constant_reflection)
 {
     const char *fluid = "objects[0].material={name: steel, fluid: {density: 8, speed: 4}}";
-    write_scene(small, strlen(small));
-    assert_int_equal(read_scene(&fluid, 1), SONJECT_OK);
+    assert_int_equal(read_scene_text(small, &fluid, 1), SONJECT_OK);
     assert_int_equal(folder->scene.objects[0].material.reflection_kind, SONJECT_REFLECTION_FLUID);
 }
 
@@ -166,8 +161,7 @@ TEST(test_overrides_change_and_add)
                                "objects[1].width = 2 m",    "sonar.altitude=11",
                                "sonar.altitude=12 m",       "injection.seed='77'"};
     const char *none = "objects=[]";
-    write_scene(small, strlen(small));
-    assert_int_equal(read_scene(overrides, COUNT(overrides)), SONJECT_OK);
+    assert_int_equal(read_scene_text(small, overrides, COUNT(overrides)), SONJECT_OK);
     assert_int_equal(folder->scene.object_count, 2);
     assert_true(folder->scene.objects[0].heading_rad == 30.0 / 180.0 * PI);
     assert_true(folder->scene.objects[1].width_m == 2.0);

@@ -76,8 +76,7 @@ TEST(test_files_are_looked_for_beside_the_scene)
     assert_int_equal(folder->scene.water_layer_count, 1);
     expect_layer(&folder->scene, 0, 0.0, 1500.0, 1.0);
     write_file("cast.csv", warm, strlen(warm));
-    write_scene(text, strlen(text));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(text, NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(strncmp(folder->report.message, beside, strlen(beside)), 0);
     assert_string_equal(folder->report.message + strlen(beside),
                         ":3: sound_speed_mps: 'warm' is not a number");

@@ -32,8 +32,7 @@ TEST(test_mistakes_do_not_hide_each_other_nor_add_any)
             strcat(text, is_wrong ? pieces[i].wrong : pieces[i].right);
             expected += !is_wrong ? 0 : i + 1 < COUNT(pieces) ? 1 : lines_of_last - 1;
         }
-        write_scene(text, strlen(text));
-        read_scene(NULL, 0);
+        read_scene_text(text, NULL, 0);
         if (lines_of(folder->report.message, strlen(folder->report.message)) != expected)
             fail_msg("%zu mistakes in\n%s\nare told as\n%s", expected, text,
                      folder->report.message);
@@ -53,8 +52,7 @@ TEST(test_a_targets_mistakes_stand_where_it_is_named)
         "sonject_target: 1\nclass: \"a\\tb\"\nparts:\n  - {shape: sphere}\n  - {shape: shpere}\n";
     write_file("t.yaml", described, strlen(described));
     strcpy(target, file_in("t.yaml"));
-    write_scene(text, strlen(text));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(text, NULL, 0), SONJECT_ERROR_INPUT);
     sprintf(expected,
             "%s:2:8: class: must be UTF-8 text without control characters\n"
             "%s:4:5: parts[0].diameter: missing; a sphere needs it\n"
@@ -73,8 +71,7 @@ TEST(test_lines_beyond_fifty_are_counted)
     char text[4000] = BASE "seabed:\n";
     for (int i = 0; i < 60; i++)
         sprintf(text + strlen(text), "  unheard_of_%d: 1\n", i);
-    write_scene(text, strlen(text));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(text, NULL, 0), SONJECT_ERROR_INPUT);
     /* fifty, or as many as there is room for where the folder's name is long */
     const char *message = folder->report.message;
     const int told = (int)lines_of(message, strlen(message)) - 1;
@@ -87,8 +84,7 @@ TEST(test_lines_beyond_fifty_are_counted)
 TEST(test_broken_yaml_ends_the_reading)
 {
     static const char text[] = "sonject: 5\nsonar: {frequency: 1 m}\ninput: [\n";
-    write_scene(text, strlen(text));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(text, NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(lines_of(folder->report.message, strlen(folder->report.message)), 1);
 }
 

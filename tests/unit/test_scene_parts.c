@@ -115,9 +115,7 @@ TEST(test_overrides_reach_parts)
                                "objects[0].parts[2]={shape: disc, diameter: 1}"};
     const char text[] = OBJECT "parts: [{shape: sphere, diameter: 1},\n"
                                "      {parts: [{shape: sphere, diameter: 1}]}]\n";
-    write_scene(text, strlen(text));
-    if (read_scene(overrides, COUNT(overrides)) != SONJECT_OK)
-        fail_msg("%s", folder->report.message);
+    EXPECT_OK(&folder->report, read_scene_text(text, overrides, COUNT(overrides)));
     assert_int_equal(folder->scene.part_count, 3);
     assert_true(part_at(1)->shape.diameter_m == 0.7);
     assert_int_equal(part_at(2)->shape.shape, SHAPE_DISC);
@@ -273,8 +271,7 @@ TEST(test_large_targets_are_refused)
     write_target(text);
     free(text);
     static const char scene[] = OBJECT "target: target.yaml\n";
-    write_scene(scene, strlen(scene));
-    assert_int_equal(read_scene(NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(read_scene_text(scene, NULL, 0), SONJECT_ERROR_INPUT);
     const char *path = file_in("target.yaml");
     assert_memory_equal(folder->report.message, path, strlen(path));
     assert_non_null(strstr(folder->report.message, "larger than"));

@@ -61,8 +61,7 @@ static void expect_height(const char *what, double height, double expected, doub
 static void take(struct ground *ground, const char *text)
 {
     expect_scene_taken(text);
-    if (lay(ground) != SONJECT_OK)
-        fail_msg("%s", folder->report.message);
+    EXPECT_OK(&folder->report, lay(ground));
 }
 
 /* Both sides of the track see the same ground. */
