@@ -2,27 +2,27 @@
 #ifndef SONJECT_TESTS_MESH_ARRAYS_H
 #define SONJECT_TESTS_MESH_ARRAYS_H
 
-#include <string.h>
-
+#include "claims.h"
+#include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"
 
-/* positions: vertices x 3; corners: triangles x 3 numbers of vertices. *mesh is for mesh_clear. */
-static inline sonject_status mesh_from_arrays(struct report *report, const char *name,
-                                              const double *positions, size_t vertices,
-                                              const uint32_t *corners, size_t triangles,
-                                              const struct mesh_options *options, struct mesh *mesh)
+/* Makes a mesh of a sample whose unit is unit_m. *mesh is for mesh_clear. */
+static inline void mesh_of_sample(const struct mesh_sample *sample, double unit_m,
+                                  double smooth_angle_rad, struct mesh *mesh)
 {
-    /* the arrays are only read, in spite of the casts */
-    const struct mesh_soup soup = {.report = report,
-                                   .path = name,
-                                   .positions = (double *)(uintptr_t)positions,
-                                   .corners = (uint32_t *)(uintptr_t)corners,
-                                   .vertices = vertices,
-                                   .triangles = triangles};
+    struct report report = {.host = NULL};
+    const struct mesh_soup soup = {.report = &report,
+                                   .path = "sample",
+                                   .positions = sample->positions,
+                                   .corners = sample->corners,
+                                   .vertices = sample->vertices,
+                                   .triangles = sample->triangles};
     memset(mesh, 0, sizeof *mesh);
-    mesh->options = *options;
-    return mesh_of_soup(&soup, mesh);
+    mesh_options_init(&mesh->options);
+    mesh->options.unit_m = unit_m;
+    mesh->options.smooth_angle_rad = smooth_angle_rad;
+    EXPECT_OK(&report, mesh_of_soup(&soup, mesh));
 }
 
 #endif

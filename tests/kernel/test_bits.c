@@ -122,15 +122,8 @@ static void place_rings(struct bench *bench)
     bench->scene.meshes = zeroed(2, sizeof *bench->scene.meshes);
     for (uint32_t i = 0; i < 2; i++) {
         struct mesh_sample ring;
-        struct mesh_options options;
-        mesh_options_init(&options);
-        options.unit_m = 0.4;
-        options.smooth_angle_rad = i;
         sample_ring(&ring, 60, 40);
-        EXPECT_OK(&bench->report,
-                  mesh_from_arrays(&bench->report, "ring", ring.positions, ring.vertices,
-                                   ring.corners, ring.triangles, &options,
-                                   &bench->scene.meshes[bench->scene.mesh_count++]));
+        mesh_of_sample(&ring, 0.4, i, &bench->scene.meshes[bench->scene.mesh_count++]);
         sample_clear(&ring);
         bench_place(bench_add(bench, SHAPE_MESH, 0.0, 0.0, 0.0), 30.0 + 35.0 * i, 60.0, 0.7 * i,
                     1.1 * i, 0.0)

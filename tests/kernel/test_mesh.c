@@ -92,12 +92,7 @@ static void ask(const struct mesh *mesh, struct flight *rays)
 /* Makes a mesh of the sample, and clears the sample. */
 static void prepare(struct mesh_sample *sample, double smooth_angle, struct mesh *mesh)
 {
-    static struct report report;
-    struct mesh_options options;
-    mesh_options_init(&options);
-    options.smooth_angle_rad = smooth_angle;
-    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
-                                        sample->corners, sample->triangles, &options, mesh));
+    mesh_of_sample(sample, 1.0, smooth_angle, mesh);
     sample_clear(sample);
 }
 

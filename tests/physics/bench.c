@@ -165,15 +165,13 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
 
 void bench_add_tetrahedron(struct bench *bench)
 {
-    static const double positions[][3] = {
+    static double positions[][3] = {
         {-0.3, -0.3, -0.2}, {0.3, -0.3, -0.2}, {0.0, 0.4, -0.2}, {0.0, 0.0, 0.4}};
-    static const uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    struct mesh_options options;
-    mesh_options_init(&options);
+    static uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const struct mesh_sample tetrahedron = {positions[0], corners[0], 4, 4};
     bench->scene.meshes = zeroed(1, sizeof *bench->scene.meshes);
     bench->scene.mesh_count = 1;
-    EXPECT_OK(&bench->report, mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4,
-                                               corners[0], 4, &options, &bench->scene.meshes[0]));
+    mesh_of_sample(&tetrahedron, 1.0, 0.0, &bench->scene.meshes[0]);
 }
 
 size_t bench_buffer_bytes(struct bench *bench, device_buffer buffer)

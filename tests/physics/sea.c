@@ -155,20 +155,13 @@ void sea_set_material(struct sea *sea, const sonject_material_params *material)
         scene->parts[i].shape.material = *material;
 }
 
-void sea_add_mesh(struct sea *sea, const struct triangles *mesh, double unit_m,
+void sea_add_mesh(struct sea *sea, const struct mesh_sample *mesh, double unit_m,
                   double smooth_angle_rad)
 {
     struct scene *scene = &sea->bench->scene;
-    struct mesh_options options;
-    mesh_options_init(&options);
-    options.unit_m = unit_m;
-    options.smooth_angle_rad = smooth_angle_rad;
     scene->meshes = realloc(scene->meshes, (scene->mesh_count + 1) * sizeof *scene->meshes);
     assert_non_null(scene->meshes);
-    EXPECT_OK(&sea->bench->report, mesh_from_arrays(&sea->bench->report, "mesh", mesh->positions,
-                                                    mesh->vertices, mesh->corners, mesh->triangles,
-                                                    &options, &scene->meshes[scene->mesh_count]));
-    scene->mesh_count++;
+    mesh_of_sample(mesh, unit_m, smooth_angle_rad, &scene->meshes[scene->mesh_count++]);
 }
 
 void sea_add_mound(struct sea *sea, double radius_m, double height_m, double beyond_m)

@@ -8,6 +8,7 @@
 
 #include <sonject/sonject.h>
 
+#include "../kernel/mesh_samples.h"
 #include "bench.h"
 #include "inject/injection.h"
 #include "scene/params.h"
@@ -81,13 +82,8 @@ sonject_object_params *sea_add_part(struct sea *sea, enum shape_kind shape, cons
 /* Gives all objects and their parts a surface. */
 void sea_set_material(struct sea *sea, const sonject_material_params *material);
 
-/* The triangles of a mesh. sea_add_mesh makes them the scene's next mesh. */
-struct triangles {
-    const double *positions; /* vertices x 3, m */
-    const uint32_t *corners;
-    size_t vertices, triangles;
-};
-void sea_add_mesh(struct sea *sea, const struct triangles *mesh, double unit_m,
+/* Makes a sample the scene's next mesh. */
+void sea_add_mesh(struct sea *sea, const struct mesh_sample *mesh, double unit_m,
                   double smooth_angle_rad);
 
 /* Adds the mesh of a tetrahedron within 0.5 m of its middle. */

@@ -1,7 +1,6 @@
 /* Meshes compared with the shapes that they stand for: glints of facets by physical optics,
  * energies and shadows, plates as large as their facets, sheets with two sides, coarse facets of
  * smooth surfaces; and one mesh shown by several objects. */
-#include "../kernel/mesh_samples.h"
 #include "sea.h"
 
 #define ROWS    121
@@ -13,9 +12,7 @@
 static void add_sample(struct sea *sea, struct mesh_sample *sample, double unit_m,
                        double smooth_angle_rad)
 {
-    const struct triangles triangles = {sample->positions, sample->corners, sample->vertices,
-                                        sample->triangles};
-    sea_add_mesh(sea, &triangles, unit_m, smooth_angle_rad);
+    sea_add_mesh(sea, sample, unit_m, smooth_angle_rad);
     sample_clear(sample);
 }
 
@@ -109,14 +106,14 @@ CLAIM(rough_balls_are_lit_like_the_sphere)
  * So both show the same. A mirrored box would return 3 % less. */
 CLAIM(both_sides_show_the_same)
 {
-    static const double positions[][3] = {{-0.5, -0.2, -0.1}, {0.5, -0.2, -0.1}, {0.5, 0.2, -0.1},
-                                          {-0.5, 0.2, -0.1},  {-0.5, -0.2, 0.1}, {0.5, -0.2, 0.1},
-                                          {-0.5, 0.2, 0.1},   {0.1, 0.2, 0.1},   {0.5, 0.0, 0.1},
-                                          {0.5, 0.2, 0.0}};
-    static const uint32_t corners[][3] = {
+    static double positions[][3] = {{-0.5, -0.2, -0.1}, {0.5, -0.2, -0.1}, {0.5, 0.2, -0.1},
+                                    {-0.5, 0.2, -0.1},  {-0.5, -0.2, 0.1}, {0.5, -0.2, 0.1},
+                                    {-0.5, 0.2, 0.1},   {0.1, 0.2, 0.1},   {0.5, 0.0, 0.1},
+                                    {0.5, 0.2, 0.0}};
+    static uint32_t corners[][3] = {
         {0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {0, 4, 6}, {0, 6, 3}, {1, 2, 9}, {1, 9, 8},
         {1, 8, 5}, {2, 3, 9}, {3, 6, 7}, {3, 7, 9}, {4, 5, 8}, {4, 8, 7}, {4, 7, 6}, {7, 8, 9}};
-    const struct triangles box = {positions[0], corners[0], COUNT(positions), COUNT(corners)};
+    const struct mesh_sample box = {positions[0], corners[0], COUNT(positions), COUNT(corners)};
     struct tile_sums sums[2];
     for (int i = 0; i < 2; i++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, FAR_M);
@@ -176,9 +173,9 @@ CLAIM(a_box_of_facets_is_the_box)
 /* Returns the image of a plate: as a mesh facing the sonar (0) or away (1), or as the shape (2). */
 static const struct image *image_of_sheet(int kind, bool is_rough)
 {
-    static const double positions[][3] = {
+    static double positions[][3] = {
         {-0.3, -0.2, 0.0}, {0.3, -0.2, 0.0}, {0.3, 0.2, 0.0}, {-0.3, 0.2, 0.0}};
-    static const uint32_t corners[][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 2, 1}, {0, 3, 2}}};
+    static uint32_t corners[][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 2, 1}, {0, 3, 2}}};
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->injection->interactions = is_rough ? 3 : 1;
     sonject_object_params *object =
@@ -189,7 +186,7 @@ static const struct image *image_of_sheet(int kind, bool is_rough)
         make_rough(object, 0.1);
     lay_mirror(sea);
     if (kind < 2) {
-        const struct triangles sheet = {positions[0], corners[kind][0], 4, 2};
+        const struct mesh_sample sheet = {positions[0], corners[kind][0], 4, 2};
         sea_add_mesh(sea, &sheet, 1.0, 0.0);
     }
     return sea_image(sea);

@@ -163,7 +163,7 @@ static void build_union(struct sea *sea, bool is_mesh)
         put_triangle(&end, (uint32_t)vertices - 1, CYLINDER_ABOVE * SECTORS + i,
                      CYLINDER_ABOVE * SECTORS + next);
     }
-    const struct triangles mesh = {positions, corners, vertices, 8 * SECTORS};
+    const struct mesh_sample mesh = {positions, corners, vertices, 8 * SECTORS};
     sea_add_mesh(sea, &mesh, 1.0, 0.0);
 }
 

@@ -4,7 +4,8 @@
 #include "base/byte_order.h"
 #include "claims.h"
 #include "kernel/mesh_samples.h"
-#include "mesh_arrays.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_reader.h"
 
 #include "clean_folder.h"
 
@@ -376,18 +377,17 @@ TEST(faces_that_are_not_convex_stay_inside_their_outline)
 TEST(test_units_and_axes)
 {
     struct mesh_sample sample;
-    struct mesh_options options;
-    struct mesh mesh;
+    struct mesh mesh = {.options = {.unit_m = 0.001, .axes = {1, -3, 2}}};
     sample_box(&sample); /* 2 x 1.2 x 0.6 */
     for (size_t i = 0; i < sample.vertices; i++)
         sample.positions[3 * i + 1] += 1e6; /* far from the file's origin */
-    mesh_options_init(&options);
-    options.unit_m = 0.001;
-    options.axes[0] = 1;
-    options.axes[1] = -3;
-    options.axes[2] = 2;
-    EXPECT_OK(&report, mesh_from_arrays(&report, "box", sample.positions, sample.vertices,
-                                        sample.corners, sample.triangles, &options, &mesh));
+    const struct mesh_soup soup = {.report = &report,
+                                   .path = "box",
+                                   .positions = sample.positions,
+                                   .corners = sample.corners,
+                                   .vertices = sample.vertices,
+                                   .triangles = sample.triangles};
+    EXPECT_OK(&report, mesh_of_soup(&soup, &mesh));
     assert_true(fabs(mesh.centre_m[2] - 1000.0) < 1e-9);
     assert_true(fabs((double)mesh.upper_m[0] - 1.0e-3) < 1e-9);
     assert_true(fabs((double)mesh.upper_m[1] - 0.3e-3) < 1e-9);

@@ -8,11 +8,7 @@ static struct report report;
 static struct mesh prepare(const struct mesh_sample *sample)
 {
     struct mesh mesh;
-    struct mesh_options options;
-    mesh_options_init(&options);
-    report.message[0] = '\0';
-    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
-                                        sample->corners, sample->triangles, &options, &mesh));
+    mesh_of_sample(sample, 1.0, 0.0, &mesh);
     return mesh;
 }
 
@@ -261,11 +257,7 @@ TEST(test_crowded_vertex)
         memcpy(&cone.corners[6 * i], both, sizeof both);
     }
     struct mesh mesh;
-    struct mesh_options options;
-    mesh_options_init(&options);
-    options.smooth_angle_rad = 0.5;
-    EXPECT_OK(&report, mesh_from_arrays(&report, "cone", cone.positions, cone.vertices,
-                                        cone.corners, cone.triangles, &options, &mesh));
+    mesh_of_sample(&cone, 1.0, 0.5, &mesh);
     assert_true(mesh.topology.is_closed);
     mesh_clear(&mesh);
     sample_clear(&cone);

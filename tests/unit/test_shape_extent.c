@@ -234,11 +234,7 @@ TEST(test_nothing_stands_prouder_than_it_is_high)
 
 static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
 {
-    struct report report = {.host = NULL};
-    struct mesh_options options;
-    mesh_options_init(&options);
-    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
-                                        sample->corners, sample->triangles, &options, mesh));
+    mesh_of_sample(sample, 1.0, 0.0, mesh);
     sample_clear(sample);
 }
 
