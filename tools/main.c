@@ -24,7 +24,7 @@ static void print_help(FILE *file)
           "  sonject --version   the version\n"
           "\n"
           "Exit status: 0 done, 2 wrong usage, 3 unusable scene or image, 4 device,\n"
-          "5 files or memory, 85 stopped by SIGTERM (run the same command again).\n",
+          "5 files or memory, 85 stopped by SIGTERM, 130 by Ctrl-C (run the same command again).\n",
           file);
 }
 
