@@ -186,51 +186,63 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
-/* Returns the offset to j * bins_per_pixel from which column j takes bins. */
-static int32_t first_bin_of_columns(const struct form_lines *lines)
+/* Lines that are compressed together. */
+struct line_batch {
+    int32_t strip;             /* number of the first line's strip */
+    int32_t count;             /* lines */
+    struct span bins;          /* of each line, counted from the grid's first */
+    const device_buffer *data; /* two planes of count x bins.count; NULL: zeros */
+    device_buffer filled;      /* struct filled_span of each line */
+};
+
+/* Returns the offset to j * bins_per_pixel from which column j takes bins of a line. */
+static int32_t first_bin_of_columns(const struct form_lines *lines, struct span bins)
 {
-    return lines->pulse_first + (int32_t)(lines->at.first_column * lines->grid.bins_per_pixel);
+    return lines->pulse_first + (int32_t)(lines->at.first_column * lines->grid.bins_per_pixel) -
+           bins.first;
 }
 
-/* Sorts some lines of each plane by the pixels that take their bins. NULL planes give zeros. */
-static sonject_status sort_bins(struct form_lines *lines, struct span some,
-                                const device_buffer bins[2], device_buffer filled, int32_t stride,
-                                device_buffer sorted[2])
+/* Sorts some lines of each plane by the pixels that take their bins. */
+static sonject_status sort_bins(struct form_lines *lines, const struct line_batch *batch,
+                                struct span some, int32_t stride, device_buffer sorted[2])
 {
-    const int32_t bin_count = lines->grid.bins.count;
+    const int32_t bin_count = batch->bins.count;
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = first_bin_of_columns(lines);
+    const int32_t first = first_bin_of_columns(lines, batch->bins);
     const size_t bytes = (size_t)some.count * (size_t)per_pixel * (size_t)stride * sizeof(float);
     const size_t global[2] = {(size_t)stride / lines->device->width, (size_t)some.count};
     for (size_t part = 0; part < lines->planes; part++) {
-        if (!bins[part]) {
+        if (!batch->data[part]) {
             CHECK(buffer_create(lines->report, lines->device, bytes, NULL, &sorted[part]));
             continue;
         }
         CHECK(buffer_reserve(lines->report, lines->device, bytes, &sorted[part]));
-        const struct kernel_argument arguments[] = {ARGUMENT(bins[part]), ARGUMENT(filled),
-                                                    ARGUMENT(some.first), ARGUMENT(bin_count),
-                                                    ARGUMENT(first),      ARGUMENT(per_pixel),
-                                                    ARGUMENT(stride),     ARGUMENT(sorted[part])};
+        const struct kernel_argument arguments[] = {ARGUMENT(batch->data[part]),
+                                                    ARGUMENT(batch->filled),
+                                                    ARGUMENT(some.first),
+                                                    ARGUMENT(bin_count),
+                                                    ARGUMENT(first),
+                                                    ARGUMENT(per_pixel),
+                                                    ARGUMENT(stride),
+                                                    ARGUMENT(sorted[part])};
         CHECK(kernel_run(lines->report, lines->device, lines->sort, arguments, COUNT(arguments), 2,
                          global));
     }
     return SONJECT_OK;
 }
 
-/* Compresses sorted lines. strip: number of the strip of line 0. */
-static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, struct span some,
-                                      const device_buffer sorted[2], int32_t sorted_stride,
-                                      device_buffer filled)
+static sonject_status compress_sorted(struct form_lines *lines, const struct line_batch *batch,
+                                      struct span some, const device_buffer sorted[2],
+                                      int32_t sorted_stride)
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = first_bin_of_columns(lines);
+    const int32_t first = first_bin_of_columns(lines, batch->bins);
     const int32_t taps = lines->pulse_taps;
     const int32_t stride = (int32_t)lines->stride;
-    const int32_t out_strip = strip + some.first - lines->grid.strips.first;
+    const int32_t out_strip = batch->strip + some.first - lines->grid.strips.first;
     const bool is_complex = lines->imaginary_pulse != NULL; /* else the next one takes its place */
     struct kernel_argument arguments[14] = {
-        ARGUMENT(sorted[0]),  ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(filled),
+        ARGUMENT(sorted[0]),  ARGUMENT(sorted[1]), ARGUMENT(sorted_stride), ARGUMENT(batch->filled),
         ARGUMENT(some.first), ARGUMENT(first),     ARGUMENT(per_pixel),     ARGUMENT(lines->pulse)};
     const struct kernel_argument rest[] = {ARGUMENT(lines->imaginary_pulse),
                                            ARGUMENT(taps),
@@ -247,8 +259,7 @@ static sonject_status compress_sorted(struct form_lines *lines, int32_t strip, s
 }
 
 /* Compresses lines some at a time: a long pulse makes sorted lines far longer than the bins. */
-static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
-                               const device_buffer bins[2], device_buffer filled)
+static sonject_status compress(struct form_lines *lines, const struct line_batch *batch)
 {
     const int32_t columns =
         (int32_t)lines->stride + (lines->pulse_taps - 1) / (int32_t)lines->grid.bins_per_pixel + 1;
@@ -257,48 +268,50 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const int32_t most = fitting > 1 ? fitting : 1;
     struct span some = {0, 0};
     sonject_status status = SONJECT_OK;
-    for (; status == SONJECT_OK && some.first < count; some.first += most) {
+    for (; status == SONJECT_OK && some.first < batch->count; some.first += most) {
         device_buffer sorted[2] = {NULL, NULL};
-        some.count = count - some.first < most ? count - some.first : most;
-        status = sort_bins(lines, some, bins, filled, stride, sorted);
-        THEN(status, compress_sorted(lines, strip, some, sorted, stride, filled));
+        some.count = batch->count - some.first < most ? batch->count - some.first : most;
+        status = sort_bins(lines, batch, some, stride, sorted);
+        THEN(status, compress_sorted(lines, batch, some, sorted, stride));
         buffer_release(lines->device, &sorted[0]);
         buffer_release(lines->device, &sorted[1]);
     }
     return status;
 }
 
-/* Notes the columns of a strip's line that filled bins reach. */
-static void note_filled(struct form_lines *lines, int32_t strip, struct filled_span bins)
+/* Notes the columns that a line's filled bins reach. */
+static void note_filled(struct form_lines *lines, const struct line_batch *batch, int32_t line,
+                        struct filled_span filled)
 {
     const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
-    const int32_t first = first_bin_of_columns(lines);
-    const int32_t before = bins.first - first - lines->pulse_taps; /* the last bin too early */
-    struct filled_span *columns = &lines->filled_columns[strip - lines->grid.strips.first];
+    const int32_t first = first_bin_of_columns(lines, batch->bins);
+    const int32_t before = filled.first - first - lines->pulse_taps; /* the last bin too early */
+    struct filled_span *columns =
+        &lines->filled_columns[batch->strip + line - lines->grid.strips.first];
     columns->first = before < 0 ? 0 : before / per_pixel + 1;
-    columns->end = bins.end - 1 < first ? 0 : (bins.end - 1 - first) / per_pixel + 1;
+    columns->end = filled.end - 1 < first ? 0 : (filled.end - 1 - first) / per_pixel + 1;
 }
 
-/* Compresses strips whose bins are on the device. */
-static sonject_status compress_filled(struct form_lines *lines, int32_t strip, int32_t count,
-                                      const device_buffer bins[2], const struct filled_span *filled)
+/* Compresses lines that are on the device. */
+static sonject_status compress_filled(struct form_lines *lines, struct line_batch *batch,
+                                      const struct filled_span *filled)
 {
-    device_buffer buffer = NULL;
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < batch->count; i++)
         if (!filled_span_is_empty(filled[i]))
-            note_filled(lines, strip + i, filled[i]);
-    sonject_status status = buffer_create(lines->report, lines->device,
-                                          (size_t)count * sizeof *filled, filled, &buffer);
-    THEN(status, compress(lines, strip, count, bins, buffer));
-    buffer_release(lines->device, &buffer);
+            note_filled(lines, batch, i, filled[i]);
+    sonject_status status =
+        buffer_create(lines->report, lines->device, (size_t)batch->count * sizeof *filled, filled,
+                      &batch->filled);
+    THEN(status, compress(lines, batch));
+    buffer_release(lines->device, &batch->filled);
     return status;
 }
 
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
-                              const float *real_part, const float *imaginary_part)
+                              struct span bins, const float *real_part, const float *imaginary_part)
 {
-    const size_t width = (size_t)lines->grid.bins.count;
-    if (lines->at.columns == 0 || count == 0)
+    const size_t width = (size_t)bins.count;
+    if (lines->at.columns == 0 || count == 0 || bins.count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
@@ -311,14 +324,14 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
         const size_t at = (size_t)run.first * width;
         const size_t bytes = (size_t)run.count * width * sizeof(float);
         const float *parts[2] = {real_part + at, imaginary_part ? imaginary_part + at : NULL};
-        device_buffer bins[2] = {NULL, NULL};
+        device_buffer data[2] = {NULL, NULL};
+        struct line_batch batch = {strip + run.first, run.count, bins, data, NULL};
         for (int part = 0; part < 2 && parts[part]; part++)
             THEN(status,
-                 buffer_create(lines->report, lines->device, bytes, parts[part], &bins[part]));
-        THEN(status,
-             compress_filled(lines, strip + run.first, run.count, bins, filled + run.first));
-        buffer_release(lines->device, &bins[0]);
-        buffer_release(lines->device, &bins[1]);
+                 buffer_create(lines->report, lines->device, bytes, parts[part], &data[part]));
+        THEN(status, compress_filled(lines, &batch, filled + run.first));
+        buffer_release(lines->device, &data[0]);
+        buffer_release(lines->device, &data[1]);
     }
     free(filled);
     return status;
@@ -364,7 +377,8 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     const struct span numbers = {lines->grid.bins.first +
                                      (int32_t)(view->first_column * lines->grid.bins_per_pixel),
                                  lines->grid.bins.count};
-    device_buffer bins[2];
+    device_buffer data[2];
+    struct line_batch batch = {strip, count, {0, lines->grid.bins.count}, data, NULL};
     if (lines->at.columns == 0 || count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
@@ -372,10 +386,10 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     for (int32_t i = 0; i < count; i++) /* takes all bins for filled */
         filled[i].end = lines->grid.bins.count;
     sonject_status status =
-        speckle_draw(lines->report, lines->device, numbers, strips, energy, seed, stream, bins);
-    THEN(status, compress_filled(lines, strip, count, bins, filled));
-    buffer_release(lines->device, &bins[0]);
-    buffer_release(lines->device, &bins[1]);
+        speckle_draw(lines->report, lines->device, numbers, strips, energy, seed, stream, data);
+    THEN(status, compress_filled(lines, &batch, filled));
+    buffer_release(lines->device, &data[0]);
+    buffer_release(lines->device, &data[1]);
     free(filled);
     return status;
 }

@@ -71,10 +71,12 @@ void form_lines_end(struct form_lines *lines);
 int32_t form_reach(const struct patch_view *view, const struct point_response *response,
                    enum form_kind kind, uint32_t strips_per_row);
 
-/* Range-compresses count strips from `strip` on: two planes of count x grid.bins.count. A NULL
- * imaginary_part is zero. Errors: DEVICE, MEMORY. */
+/* Range-compresses count strips from `strip` on: two planes of count x bins.count, the bins counted
+ * from the grid's first. The grid's other bins are empty. A NULL imaginary_part is zero. Errors:
+ * DEVICE, MEMORY. */
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
-                              const float *real_part, const float *imaginary_part);
+                              struct span bins, const float *real_part,
+                              const float *imaginary_part);
 
 /* Draws sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin
  * alone, for strips.count x bins.count cells of one grid. Both buffers are the caller's for

@@ -138,8 +138,8 @@ static sonject_status form_energies(struct forming *forming, const struct point_
     if (impulse_lines_begin(lines))
         status = form_lines_begin(energies, tracer->report, tracer->device, &tracer->view, response,
                                   FORM_ENERGY, &lines->grid);
-    THEN(status,
-         form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0], NULL));
+    THEN(status, form_lines_add(energies, lines->strips.first, lines->strips.count,
+                                impulse_lines_bins(lines), lines->plane[0], NULL));
     if (status == SONJECT_OK && impulse_lines_end(lines)) {
         status = form_lines_finish_view(energies, formed, NULL);
         form_lines_end(energies);
@@ -153,8 +153,9 @@ static sonject_status add_coherent(struct forming *forming, const struct impulse
     const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
     float *parts = coherent_seabed_lines(forming->tracer, forming->request, lines);
     CHECK_MEMORY(forming->tracer->report, parts, "the seabed");
-    const sonject_status status = form_lines_add(&forming->field, lines->strips.first,
-                                                 lines->strips.count, parts, parts + cells);
+    const sonject_status status =
+        form_lines_add(&forming->field, lines->strips.first, lines->strips.count,
+                       impulse_lines_bins(lines), parts, parts + cells);
     free(parts);
     return status;
 }
@@ -274,8 +275,9 @@ static sonject_status add_hidden(struct forming *forming, const struct impulse_l
         return SONJECT_OK;
     CHECK(form_lines_begin(&forming->energies, tracer->report, tracer->device, &tracer->view,
                            &response, FORM_ENERGY, &lines->grid));
-    sonject_status status = form_lines_add(&forming->energies, lines->strips.first,
-                                           lines->strips.count, lines->plane[0], NULL);
+    sonject_status status =
+        form_lines_add(&forming->energies, lines->strips.first, lines->strips.count,
+                       impulse_lines_bins(lines), lines->plane[0], NULL);
     THEN(status, form_end(&forming->energies, &hidden));
     for (size_t i = 0; status == SONJECT_OK && i < hidden.count; i++) {
         const size_t row = hidden.at.first_row + i / hidden.at.columns;
@@ -322,8 +324,8 @@ static sonject_status finish_chains(struct forming *forming, bool is_brute_force
     struct echoes *echoes = forming->echoes;
     const size_t pixels = echoes->rows * echoes->columns;
     const struct line_grid *grid = &forming->chains_grid;
-    const struct impulse_lines all = {IMPULSES_CHAINS, 0, *grid,
-                                      grid->strips,    1, {forming->chains}};
+    const struct impulse_lines all = {IMPULSES_CHAINS,  0, *grid, grid->strips, grid->bins, 1,
+                                      {forming->chains}};
     struct formed drawn = {.planes = NULL};
     float *energy = allocate_array(pixels, sizeof *energy);
     CHECK_MEMORY(forming->tracer->report, energy, "multiple interactions");

@@ -69,6 +69,8 @@ static sonject_status form_seabed(struct element_taker *taker, const struct impu
 static sonject_status take(void *user, const struct impulse_lines *lines)
 {
     struct element_taker *taker = user;
+    struct line_grid grid = lines->grid;
+    grid.bins = lines->bins;
     switch (lines->kind) {
     case IMPULSES_SEABED:
         return form_seabed(taker, lines);
@@ -77,7 +79,7 @@ static sonject_status take(void *user, const struct impulse_lines *lines)
                            STREAM_OBJECT_SPECKLE + lines->number);
     case IMPULSES_GLINT:
     case IMPULSES_MULTIBOUNCE:
-        return impulse_list_add(&taker->impulses, &lines->grid, lines->strips, lines->plane[0],
+        return impulse_list_add(&taker->impulses, &grid, lines->strips, lines->plane[0],
                                 lines->plane[1]);
     case IMPULSES_BEAM:
     case IMPULSES_HIDDEN:

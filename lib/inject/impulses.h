@@ -37,8 +37,9 @@ struct impulse_lines {
                         interactions of the shortest path */
     struct line_grid grid; /* grid of the whole set */
     struct span strips;    /* the strips that come */
+    struct span bins; /* the bins that come; the others of the grid are empty in these strips */
     uint32_t planes;
-    const float *plane[IMPULSE_PLANES_MAX]; /* strips.count x grid.bins.count each */
+    const float *plane[IMPULSE_PLANES_MAX]; /* strips.count x bins.count each */
 };
 
 /* The taker of impulses: the former of an image or of series. */
@@ -57,6 +58,13 @@ static inline int impulse_lines_end(const struct impulse_lines *lines)
 {
     return lines->strips.first + lines->strips.count ==
            lines->grid.strips.first + lines->grid.strips.count;
+}
+
+/* Returns the bins that come, counted from the grid's first. */
+static inline struct span impulse_lines_bins(const struct impulse_lines *lines)
+{
+    const struct span bins = {lines->bins.first - lines->grid.bins.first, lines->bins.count};
+    return bins;
 }
 
 struct echo_request;

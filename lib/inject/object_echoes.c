@@ -251,7 +251,8 @@ static sonject_status form_rough_peak(struct peak_lattice *lattice, struct trace
         peak_lattice_init(lattice, tracer, &tile->grid, &tile->grid, FORM_ENERGY);
     THEN(status, peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid));
     THEN(status, form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
-                                tile->strips.count, tile->plane[TILE_ENERGY], NULL));
+                                tile->strips.count, impulse_lines_bins(tile),
+                                tile->plane[TILE_ENERGY], NULL));
     return status == SONJECT_OK ? peak_lattice_finish(lattice) : status;
 }
 
@@ -271,7 +272,8 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
     echo->covered = allocate_array(pixels, 1);
     sonject_status status = echo->energy && echo->lost && echo->covered
                                 ? form_lines_add(&lines, tile->strips.first, tile->strips.count,
-                                                 tile->plane[TILE_ENERGY], tile->plane[TILE_LOST])
+                                                 impulse_lines_bins(tile), tile->plane[TILE_ENERGY],
+                                                 tile->plane[TILE_LOST])
                                 : report_out_of_memory(tracer->report, "an object's echo");
     THEN(status, form_lines_finish(&lines, echo->energy + first, echo->lost + first));
     form_lines_end(&lines);
@@ -368,7 +370,8 @@ static sonject_status find_glint_peak(struct object_former *former, struct trace
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = peak_lattice_begin(lattice, tracer, FORM_FIELD, &lines->grid);
     THEN(status, form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
-                                lines->strips.count, lines->plane[0], lines->plane[1]));
+                                lines->strips.count, impulse_lines_bins(lines), lines->plane[0],
+                                lines->plane[1]));
     return status == SONJECT_OK && impulse_lines_end(lines) ? peak_lattice_finish(lattice) : status;
 }
 
@@ -380,8 +383,8 @@ static sonject_status form_glint(struct object_former *former, struct echoes *ec
     if (impulse_lines_begin(lines))
         CHECK(form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
                                &tracer->response, FORM_GLINT, &lines->grid));
-    CHECK(form_lines_add(&former->lines, lines->strips.first, lines->strips.count, lines->plane[0],
-                         lines->plane[1]));
+    CHECK(form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
+                         impulse_lines_bins(lines), lines->plane[0], lines->plane[1]));
     if (!impulse_lines_end(lines))
         return SONJECT_OK;
     const sonject_status status = form_end(&former->lines, &formed);

@@ -13,8 +13,7 @@
 #include "trace/multibounce.h"
 #include "trace/rough.h"
 
-#define STRIPS_A_LAUNCH 64                /* strips; between launches the caller may cancel */
-#define CELLS_A_TIME    ((size_t)1 << 20) /* cells of multi-bounce echoes handed out at a time */
+#define STRIPS_A_LAUNCH 64 /* strips; between launches the caller may cancel */
 
 /* The state of a trace. */
 struct tracing {
@@ -95,6 +94,7 @@ static sonject_status trace_seabed(struct tracing *tracing, enum impulse_kind ki
                                   0,
                                   trace->grid,
                                   {trace->grid.strips.first, 0},
+                                  trace->grid.bins,
                                   has_view ? 2 : 1,
                                   {tracing->chunk, tracing->second}};
     sonject_status status = SONJECT_OK;
@@ -119,8 +119,8 @@ static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
 {
     const struct rough_tile *tile = &tracing->rough.tiles[number];
     const size_t cells = line_grid_cells(&tile->grid);
-    struct impulse_lines lines = {IMPULSES_OBJECT,   number,      tile->grid,
-                                  tile->grid.strips, TILE_PLANES, {NULL}};
+    struct impulse_lines lines = {IMPULSES_OBJECT, number,      tile->grid, tile->grid.strips,
+                                  tile->grid.bins, TILE_PLANES, {NULL}};
     for (size_t i = 0; i < TILE_PLANES; i++)
         lines.plane[i] = tracing->tiles + tile->offset + i * cells;
     return emit(tracing, &lines);
@@ -135,8 +135,8 @@ static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
                              : 0;
     float *parts = allocate_array(2 * chunk, sizeof(float));
     struct impulse_lines lines = {
-        IMPULSES_GLINT,        part, glints.grid, {glints.grid.strips.first, 0}, 2,
-        {parts, parts + chunk}};
+        IMPULSES_GLINT,   part, glints.grid,           {glints.grid.strips.first, 0},
+        glints.grid.bins, 2,    {parts, parts + chunk}};
     sonject_status status =
         parts ? SONJECT_OK : report_out_of_memory(tracing->tracer->report, "glints");
     while (status == SONJECT_OK && chunk > 0 &&
@@ -152,24 +152,19 @@ static sonject_status trace_glints(const struct tracing *tracing, uint32_t part)
 static sonject_status emit_region(struct tracing *tracing, const struct multibounce *multibounce,
                                   const struct multibounce_region *region)
 {
-    const size_t bins = (size_t)region->bins.count;
-    const size_t fitting = bins < CELLS_A_TIME ? CELLS_A_TIME / bins : 1;
-    const size_t strips = (size_t)region->strips.count;
-    const size_t most = fitting < strips ? fitting : strips;
-    float *parts = allocate_array(2 * most, bins * sizeof *parts);
+    const size_t most = TILE_STRIPS * (size_t)region->bins.count;
+    float *parts = allocate_array(2 * most, sizeof *parts);
     CHECK_MEMORY(tracing->tracer->report, parts, "multi-bounce echoes");
-    struct impulse_lines lines = {IMPULSES_MULTIBOUNCE,
-                                  tracing->regions++,
-                                  multibounce->grid,
-                                  {region->strips.first, 0},
-                                  2,
-                                  {parts, parts + most * bins}};
+    struct impulse_lines lines = {IMPULSES_MULTIBOUNCE,      tracing->regions++, multibounce->grid,
+                                  {region->strips.first, 0}, region->bins,       2,
+                                  {parts, parts + most}};
     lines.grid.strips = region->strips;
     lines.grid.bins = region->bins;
     sonject_status status = SONJECT_OK;
     while (status == SONJECT_OK &&
-           (lines.strips = next_strips(&lines.grid, lines.strips, (int32_t)most)).count > 0) {
-        multibounce_read(multibounce, region, lines.strips, parts, parts + most * bins);
+           (lines.strips = next_strips(&lines.grid, lines.strips, TILE_STRIPS)).count > 0) {
+        lines.bins = multibounce_bins_filled(multibounce, region, lines.strips);
+        multibounce_read(multibounce, lines.strips, lines.bins, parts, parts + most);
         status = emit(tracing, &lines);
     }
     free(parts);
@@ -240,8 +235,8 @@ static sonject_status trace_beam(struct tracer *tracer, const struct echo_reques
     for (uint32_t i = 0; status == SONJECT_OK && i < tracer->scene->object_count; i++) {
         const struct rough_tile *tile = &beam.rough.tiles[i];
         const float *lost = beam.tiles + tile->offset + TILE_LOST * line_grid_cells(&tile->grid);
-        const struct impulse_lines lines = {IMPULSES_HIDDEN,   i, tile->grid,
-                                            tile->grid.strips, 1, {lost}};
+        const struct impulse_lines lines = {IMPULSES_HIDDEN, i, tile->grid, tile->grid.strips,
+                                            tile->grid.bins, 1, {lost}};
         status = emit(&beam, &lines);
     }
     tracing_clear(&beam);
@@ -275,7 +270,8 @@ static sonject_status emit_chains(const struct tracing *tracing, struct chain_tr
 {
     float *energy = allocate_array(line_grid_cells(&trace->grid), sizeof *energy);
     struct impulse_lines lines = {
-        IMPULSES_CHAINS, trace->first_order, trace->grid, trace->grid.strips, 1, {energy}};
+        IMPULSES_CHAINS, trace->first_order, trace->grid, trace->grid.strips, trace->grid.bins, 1,
+        {energy}};
     sonject_status status =
         energy ? SONJECT_OK
                : report_out_of_memory(tracing->tracer->report, "multiple interactions");

@@ -49,11 +49,15 @@ struct multibounce {
 /* Finds the regions of the sums; no tile lies in two of them. Errors: MEMORY. */
 sonject_status multibounce_find_regions(struct multibounce *multibounce, struct report *report);
 
-/* Reads the echoes of strips.count strips of a region into two planes of strips.count x
- * region->bins.count: complex amplitudes, m. */
-void multibounce_read(const struct multibounce *multibounce,
-                      const struct multibounce_region *region, struct span strips, float *real_part,
-                      float *imaginary_part);
+/* Returns the bins of a region that may hold echoes in some of its strips; count 0: there are none.
+ */
+struct span multibounce_bins_filled(const struct multibounce *multibounce,
+                                    const struct multibounce_region *region, struct span strips);
+
+/* Reads the echoes of some strips and bins into two planes of strips.count x bins.count: complex
+ * amplitudes, m. */
+void multibounce_read(const struct multibounce *multibounce, struct span strips, struct span bins,
+                      float *real_part, float *imaginary_part);
 
 /* Returns whether sound from the part may meet a smooth face after it. The part must be smooth,
  * with a second smooth part in the scene or not convex, and paths may have two interactions. */

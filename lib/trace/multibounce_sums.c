@@ -196,17 +196,44 @@ static void read_tile(const struct multibounce_sums *sums, size_t number, struct
     }
 }
 
-void multibounce_read(const struct multibounce *multibounce,
-                      const struct multibounce_region *region, struct span strips, float *real_part,
-                      float *imaginary_part)
+/* Returns the rows of tiles that lie in some strips. */
+static struct span tile_rows(const struct multibounce_sums *sums, struct span strips)
 {
-    const size_t bytes = (size_t)strips.count * (size_t)region->bins.count * sizeof *real_part;
+    const struct span at = span_overlap(strips, sums->grid.strips);
+    struct span rows = {(at.first - sums->grid.strips.first) / TILE_STRIPS, 0};
+    if (at.count > 0)
+        rows.count =
+            (at.first + at.count - 1 - sums->grid.strips.first) / TILE_STRIPS + 1 - rows.first;
+    return rows;
+}
+
+struct span multibounce_bins_filled(const struct multibounce *multibounce,
+                                    const struct multibounce_region *region, struct span strips)
+{
+    struct span bins = {0, 0};
+    for (size_t k = 0; k < multibounce->count; k++) {
+        const struct multibounce_sums *sums = &multibounce->sums[k];
+        const struct span rows = tile_rows(sums, strips);
+        const size_t first = (size_t)rows.first * sums->columns;
+        for (size_t i = first; i < first + (size_t)rows.count * sums->columns; i++)
+            if (sums->tiles[i])
+                bins = span_join(bins, span_overlap(region_of_tile(sums, i).bins, region->bins));
+    }
+    return bins;
+}
+
+void multibounce_read(const struct multibounce *multibounce, struct span strips, struct span bins,
+                      float *real_part, float *imaginary_part)
+{
+    const size_t bytes = (size_t)strips.count * (size_t)bins.count * sizeof *real_part;
     memset(real_part, 0, bytes);
     memset(imaginary_part, 0, bytes);
     for (size_t k = 0; k < multibounce->count; k++) {
         const struct multibounce_sums *sums = &multibounce->sums[k];
-        for (size_t i = 0; i < sums->rows * sums->columns; i++)
+        const struct span rows = tile_rows(sums, strips);
+        const size_t first = (size_t)rows.first * sums->columns;
+        for (size_t i = first; i < first + (size_t)rows.count * sums->columns; i++)
             if (sums->tiles[i])
-                read_tile(sums, i, strips, region->bins, real_part, imaginary_part);
+                read_tile(sums, i, strips, bins, real_part, imaginary_part);
     }
 }

@@ -60,6 +60,7 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
                                     const struct planes *bins, int32_t chunk, int is_speckle)
 {
     const size_t count = (size_t)lines->grid.bins.count;
+    const struct span whole = {0, lines->grid.bins.count};
     const int32_t strips = lines->grid.strips.count;
     struct planes pixels = planes_of(lines->at.rows * lines->at.columns);
     for (int32_t done = 0; done < strips; done += chunk) {
@@ -67,9 +68,10 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
         const int32_t some = strips - done < chunk ? strips - done : chunk;
         const int32_t first = lines->grid.strips.first + done;
         const sonject_status status =
-            is_speckle ? form_lines_add_speckle(lines, first, some, bins->part[0] + at,
-                                                0xfedcba9876543210u, STREAM_SEABED_SPECKLE)
-                       : form_lines_add(lines, first, some, bins->part[0] + at, bins->part[1] + at);
+            is_speckle
+                ? form_lines_add_speckle(lines, first, some, bins->part[0] + at,
+                                         0xfedcba9876543210u, STREAM_SEABED_SPECKLE)
+                : form_lines_add(lines, first, some, whole, bins->part[0] + at, bins->part[1] + at);
         EXPECT_OK(&bench->report, status);
     }
     EXPECT_OK(&bench->report, form_lines_finish(lines, pixels.part[0], pixels.part[1]));
@@ -147,7 +149,7 @@ static void compare_forming(struct bench *bench, enum form_kind kind, const stru
 }
 
 /* Forms cells alone, and among the empty cells of a grid that reaches all pixels. Alone they give a
- * window of the same pixels, and outside it nothing is lost. */
+ * window of the same pixels, and outside it nothing is lost. The grid needs no empty cells. */
 static void compare_window(struct bench *bench, enum form_kind kind)
 {
     const struct line_grid all = {2, 3, {-20, 2 * ROWS + 40}, {-40, 3 * COLUMNS + 80}};
@@ -164,6 +166,14 @@ static void compare_window(struct bench *bench, enum form_kind kind)
     struct planes whole = form_on_device(bench, &lines, &around, 1 << 20, 0);
     form_lines_end(&lines);
     assert_int_equal(whole.count, ROWS * COLUMNS);
+    struct planes sparse = planes_of(whole.count);
+    const struct span filled = {150 + 40, 60};
+    begin_lines(&lines, bench, kind, &all);
+    EXPECT_OK(&bench->report, form_lines_add(&lines, 100, 20, filled, bins.part[0], bins.part[1]));
+    EXPECT_OK(&bench->report, form_lines_finish(&lines, sparse.part[0], sparse.part[1]));
+    form_lines_end(&lines);
+    expect_same_planes(&sparse, &whole);
+    planes_clear(&sparse);
     begin_lines(&lines, bench, kind, &some);
     struct planes window = form_on_device(bench, &lines, &bins, 1 << 20, 0);
     const struct window at = lines.at;

@@ -35,7 +35,7 @@ static void add_multibounce(const struct multibounce *multibounce, struct line *
         const struct line_grid grid = {.strips = region->strips, .bins = region->bins};
         const size_t cells = line_grid_cells(&grid);
         float *parts = zeroed(2 * cells, sizeof *parts);
-        multibounce_read(multibounce, region, region->strips, parts, parts + cells);
+        multibounce_read(multibounce, region->strips, region->bins, parts, parts + cells);
         add_strips(line, first_bin, &grid, region->strips, parts, parts + cells);
         free(parts);
     }
