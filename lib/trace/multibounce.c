@@ -211,8 +211,9 @@ static sonject_status begin_launch(struct multibounce_launch *of_pair, struct tr
     THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
     THEN(status, launch_add(launch, tracer, sizeof of_pair->sources, &of_pair->sources));
     THEN(status, launch_add(launch, tracer, sizeof of_pair->record, &of_pair->record));
-    THEN(status, launch_add(launch, tracer,
-                            of_pair->capacity * sizeof(struct multibounce_echo_record), NULL));
+    THEN(status, buffer_reserve(tracer->report, tracer->device,
+                                of_pair->capacity * sizeof(struct multibounce_echo_record),
+                                &launch->buffers[launch->buffer_count++]));
     THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
     return status;
 }
