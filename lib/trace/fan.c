@@ -174,7 +174,7 @@ static double fill_slices(struct aim *aim, const struct ray_table_record *record
 
 /* Appends the rays of a path, over the elevations that a launch needs, and describes them in the
  * record. The frame's origin has the ground range and the height given. A straight path needs no
- * pieces. Errors: INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
+ * pieces. Errors: INPUT (rays turn back, or so nearly that no cubic follows them), MEMORY. */
 static sonject_status ray_table_add(struct ray_table *table, struct report *report,
                                     const struct ray_path *path, double ground_range_m,
                                     double height_m, struct elevations elevations,
@@ -184,6 +184,11 @@ static sonject_status ray_table_add(struct ray_table *table, struct report *repo
     record->ground_range = (float)ground_range_m;
     if (path->is_straight)
         return SONJECT_OK;
+    if (!isfinite(elevations.highest)) /* no number of pieces covers these elevations */
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "some sound towards the objects or close to them turns back above "
+                              "the lowest layer of water: move the patch inwards, or use smaller "
+                              "objects");
     struct aim aim = {path,
                       ground_range_m,
                       height_m,

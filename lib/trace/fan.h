@@ -58,7 +58,7 @@ struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct gr
 
 /* Works out the rays of all fans in the patch's frame, from the sonar to the patch and to whatever
  * is near the objects. The caller gives the table to ray_table_clear, also on failure. Errors:
- * INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
+ * INPUT (rays turn back, or so nearly that no cubic follows them), MEMORY. */
 sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
                                const struct tracer *tracer, const struct line_grid *grid);
 

@@ -184,3 +184,24 @@ def test_a_seabed_beyond_all_sizes(sonject, tmp_path):
     assert answer.returncode in (2, 3)
     assert len(answer.stderr.splitlines()) == 1
     assert not list(tmp_path.iterdir())
+
+
+WARM_BOTTOM = """\
+sonject: 1
+input:
+  uniform: {rows: 200, columns: 300}
+  geometry: {row_spacing: 5 cm, column_spacing: 2.5 cm, first_slant_range: 30 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, aperture: none}
+medium:
+  profile: {heights: [0, 1, 2, 4, 7, 10.5], sound_speeds: [1530, 1511, 1504, 1500.5, 1500, 1500]}
+objects:
+  - {shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, material: steel}
+"""
+
+
+def test_sound_that_turns_back_beside_an_object_is_told(sonject, tmp_path):
+    (tmp_path / "warm.yaml").write_text(WARM_BOTTOM)
+    answer = sonject("run", "warm.yaml", "-o", "result")
+    assert_refused(answer, 3, "turns back", "smaller objects")
+    answer = sonject("run", "warm.yaml", "-o", "small", "--set", "objects[0].length=0.4 m")
+    assert answer.returncode == 0, answer.stderr
