@@ -111,14 +111,14 @@ static sonject_status read_image_scene(struct sonject_campaign *campaign, const 
     for (size_t i = 0; i < keys; i++)
         source.overrides[source.override_count++] = swath->keys[i];
     source.overrides[source.override_count++] = "objects=[]";
-    if (tells_geometry)
+    if (tells_geometry && !swath) /* a swath's geometry is the scene's, as for injected ones */
         source.overrides[source.override_count++] = "input.geometry=from_file";
     if (side != 0 && !(swath && swath->side == side))
         source.overrides[source.override_count++] =
             side == RECORDED_PORT ? "input.channel=port" : "input.channel=starboard";
     if (!patch)
         source.overrides[source.override_count++] = "sonar.altitude=1 m";
-    else if (tells_altitude && !swath) /* a swath's altitude is the scene's, as for injected ones */
+    else if (tells_altitude && !swath) /* likewise */
         source.overrides[source.override_count++] = "sonar.altitude=from_file";
     if (patch) {
         snprintf(patch_text, sizeof patch_text,
@@ -169,8 +169,8 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     struct swath_file *file = NULL;
     char ends[GREY_TEXT];
     memset(facts, 0, sizeof *facts);
-    CHECK(read_image_scene(campaign, image, swath_of_image(&campaign->campaign, image, side), side,
-                           NULL, false, false, &scene));
+    const struct swath_plan *swath = swath_of_image(&campaign->campaign, image, side);
+    CHECK(read_image_scene(campaign, image, swath, side, NULL, false, false, &scene));
     sonject_status status =
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);
     if (status == SONJECT_OK && swath_file_attribute(file, GREY_ATTRIBUTE, ends, sizeof ends) &&
@@ -186,7 +186,7 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
         geometry_notes_read(file, &noted);
         facts->tells_geometry = geometry_notes_to_params(&noted, &told);
         facts->tells_altitude = isfinite(noted.altitude_m);
-        facts->nadir_column = told.nadir_column;
+        facts->nadir_column = swath ? scene.geometry.nadir_column : told.nadir_column;
     }
     swath_file_close(&file);
     scene_clear(&scene);
