@@ -159,7 +159,9 @@ static uint32_t side_of_label(const sonject_box *label, double nadir_column)
 struct image_facts {
     struct raster_layout layout;
     bool tells_geometry, tells_altitude;
+    bool is_swath;       /* the campaign has it as a swath */
     double nadir_column; /* 0 where the image shows one side */
+    double first_slant_range_m;
 };
 
 static sonject_status describe_image(struct sonject_campaign *campaign, const char *image,
@@ -186,7 +188,9 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
         geometry_notes_read(file, &noted);
         facts->tells_geometry = geometry_notes_to_params(&noted, &told);
         facts->tells_altitude = isfinite(noted.altitude_m);
+        facts->is_swath = swath;
         facts->nadir_column = swath ? scene.geometry.nadir_column : told.nadir_column;
+        facts->first_slant_range_m = scene.geometry.first_slant_range_m;
     }
     swath_file_close(&file);
     scene_clear(&scene);
@@ -212,11 +216,20 @@ static sonject_status check_size(struct report *report, const char *image,
 sonject_status contact_set_place(struct sonject_campaign *campaign, struct contact_set *set)
 {
     struct image_facts facts;
+    bool is_told = false;
     for (size_t i = 0; i < set->count; i++) {
         struct labelled_contact *contact = &set->contacts[i];
         const struct labelled_contact *before = i > 0 ? contact - 1 : NULL;
         if (!before || before->image != contact->image || before->side != contact->side)
             CHECK(describe_image(campaign, set->images[contact->image], contact->side, &facts));
+        if (!is_told && !facts.is_swath && !facts.tells_geometry) {
+            is_told = true; /* once: the others are most likely alike */
+            report_note(campaign->report,
+                        "%s is no swath of the campaign and tells no ranges: the scene's count, "
+                        "from %.4g m on; if images were cut out of a line, list the contacts in a "
+                        ".csv file with the line's rows and columns",
+                        set->images[contact->image], facts.first_slant_range_m);
+        }
         CHECK(check_size(campaign->report, set->images[contact->image], contact, &facts.layout));
         contact->seen_side =
             contact->side ? contact->side : side_of_label(&contact->box, facts.nadir_column);

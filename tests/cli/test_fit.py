@@ -157,6 +157,21 @@ def test_contacts_of_a_swath_have_the_ranges_of_the_scene(sonject, folder):
     assert numpy.sqrt(numpy.prod(ends)) == pytest.approx(0.45, rel=0.15)  # the start is 0.6
 
 
+@pytest.mark.parametrize("image", ["tile.tif", "seabed_1.tif", "seabed_3.tif"])
+def test_an_image_that_tells_no_ranges_is_told(sonject, folder, image):
+    """A tile of a line says nothing of itself. A seabed's file does, and a swath has the scene's geometry."""
+    fitting.make_seabeds(sonject, numbers=(3,))
+    pixels = images.read_tiff(folder / "seabed_1.tif")
+    (folder / "tile.tif").write_bytes(images.tiff_bytes(pixels[:, 200:]))
+    (folder / "seabed_1.tif").write_bytes(images.tiff_bytes(pixels))
+    (folder / "contacts.csv").write_text(
+        "image,row,column,rows,columns\n" + "".join(f"{image},{row},5,9,20\n" for row in (5, 50)))
+    done = sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml")
+    assert done.returncode == 3 and "has 2 contacts; a fit needs 10 or more" in done.stderr
+    note = "tile.tif is no swath of the campaign and tells no ranges: the scene's count, from 30 m on"
+    assert done.stderr.count(note) == (image == "tile.tif") and done.stderr.count("no swath") == (image == "tile.tif")
+
+
 def test_a_byte_order_mark_is_not_in_the_fitted_file(sonject, folder):
     """The comment goes before the first key, and a mark may only begin a file."""
     contacts = "".join(f"seabed_1.tif,{20 + 9 * i},5,9,20\n" for i in range(12))
