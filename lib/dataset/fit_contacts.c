@@ -22,6 +22,7 @@
     128                /* columns behind a highlight's label in which its shadow is looked for     \
                         */
 #define SHADOW_ROWS 6  /* rows by which the shadow may be wider */
+#define EDGE_REACH  2  /* columns before the image's edge at which a shadow may end that it cuts */
 #define ECHO_REACH  24 /* columns before a shadow's label that may have its highlight */
 
 void contact_chip_clear(struct contact_chip *chip)
@@ -367,6 +368,9 @@ static void fill_extents(const struct contact_chip *chip, const sonject_contact_
         of[i] = of[i] > 1e-3 ? log(of[i]) : NAN;
     of[EXTENT_HIGHLIGHT_LEVEL] = measures->highlight_contrast_db;
     of[EXTENT_SHADOW_LEVEL] = measures->shadow_contrast_db;
+    extents->is_shadow_cut =
+        measures->shadow.rows > 0 &&
+        measures->shadow.first_column + measures->shadow.columns + EDGE_REACH >= chip->columns;
     extents->highlight_visibility_db = measures->highlight_visibility_db;
     extents->shadow_visibility_db = measures->shadow_visibility_db;
 }
@@ -378,6 +382,7 @@ sonject_status contact_chip_measure(struct report *report, const struct contact_
     sonject_contact_measures measures;
     for (int i = 0; i < EXTENT_KINDS; i++)
         extents->of[i] = NAN;
+    extents->is_shadow_cut = false;
     extents->highlight_visibility_db = extents->shadow_visibility_db = extents->pad_pixels = NAN;
     const double range_m =
         chip->first_slant_range_m + chip->column_spacing_m * ((double)chip->label.first_column +

@@ -9,8 +9,9 @@
 #include "base/memory.h"
 #include "dataset/fit.h"
 
-#define CLEAR_LEAST  24 /* clear contacts of a round */
-#define LEVEL_ROUNDS 2  /* first rounds, which move only levels */
+#define CLEAR_LEAST  24   /* clear contacts of a round */
+#define LEVEL_ROUNDS 2    /* first rounds, which move only levels */
+#define CUT_MOST     0.25 /* share of shadows that images cut beyond that of real ones */
 #define PAD_MOST     16.0
 #define PAD_CLEAR    0.75 /* pixels */
 
@@ -305,6 +306,39 @@ static sonject_status run_round(struct fit *fit, const struct device_slot *slot,
     return status;
 }
 
+/* Returns the share of shadows that images cut. */
+static double cut_share(const struct contact_extents *extents, size_t stride, size_t count)
+{
+    size_t seen = 0;
+    size_t cut = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct contact_extents of;
+        memcpy(&of, (const char *)extents + i * stride, sizeof of);
+        seen += isfinite(of.of[EXTENT_SHADOW_HEIGHT]);
+        cut += isfinite(of.of[EXTENT_SHADOW_HEIGHT]) && of.is_shadow_cut;
+    }
+    return seen > 0 ? (double)cut / (double)seen : 0.0;
+}
+
+/* Tells where the campaign's images cut more shadows of the last round, from the first-th contact
+ * on, than real images do. Such shadows stay short, however high the targets are made. */
+static void tell_cut_shadows(struct fit *fit, size_t first)
+{
+    const double real = cut_share(fit->real, sizeof *fit->real, fit->real_count);
+    const double made =
+        cut_share(&fit->made[first].shown, sizeof *fit->made, fit->made_count - first);
+    char note[200];
+    if (fit->draws.contacts_lack_shadows || made < real + CUT_MOST)
+        return;
+    snprintf(
+        note, sizeof note,
+        "the campaign's images cut %.0f %% of the injected shadows, far more than of real ones, "
+        "so heights come out too great: fit with larger images (chip.columns)",
+        100.0 * made);
+    report_note(fit->report, "%s", note);
+    growing_text_add(&fit->notes, "%s\n", note);
+}
+
 sonject_status fit_run_rounds(struct fit *fit, struct device_slot *slot,
                               sonject_progress_function progress, void *user)
 {
@@ -322,6 +356,8 @@ sonject_status fit_run_rounds(struct fit *fit, struct device_slot *slot,
             widen_labels(fit, first);
         if (round + 1 < FIT_ROUNDS)
             CHECK(move_draws(fit, round, &prior));
+        else
+            tell_cut_shadows(fit, first);
     }
     return SONJECT_OK;
 }

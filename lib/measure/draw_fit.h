@@ -46,6 +46,7 @@ struct contact_extents {
     double highlight_visibility_db, shadow_visibility_db;
     double pad_pixels;          /* margin of the label around the visible contact, on each side */
     double range_over_altitude; /* ratio at the label's middle */
+    bool is_shadow_cut;         /* the shadow reaches the image's edge */
 };
 
 /* An injected contact: its draws and its measures. */
