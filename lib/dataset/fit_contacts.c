@@ -16,14 +16,12 @@
 #include "swath/geometry_notes.h"
 #include "swath/recording.h"
 
-#define CHIP_MARGIN  64 /* pixels around a label, for the seabed's level */
-#define LABEL_MARGIN 2  /* pixels around a label that are also searched */
-#define SHADOW_REACH                                                                               \
-    128                /* columns behind a highlight's label in which its shadow is looked for     \
-                        */
-#define SHADOW_ROWS 6  /* rows by which the shadow may be wider */
-#define EDGE_REACH  2  /* columns before the image's edge at which a shadow may end that it cuts */
-#define ECHO_REACH  24 /* columns before a shadow's label that may have its highlight */
+#define CHIP_MARGIN  64  /* pixels around a label, for the seabed's level */
+#define LABEL_MARGIN 2   /* pixels around a label that are also searched */
+#define SHADOW_REACH 256 /* columns behind a highlight's label where its shadow is looked for */
+#define SHADOW_ROWS  6   /* rows by which the shadow may be wider */
+#define EDGE_REACH   2  /* columns before the image's edge at which a shadow may end that it cuts */
+#define ECHO_REACH   24 /* columns before a shadow's label that may have its highlight */
 
 void contact_chip_clear(struct contact_chip *chip)
 {
@@ -31,10 +29,18 @@ void contact_chip_clear(struct contact_chip *chip)
     memset(chip, 0, sizeof *chip);
 }
 
-/* Returns the part around a label of an image of rows x columns. */
-static sonject_box chip_window(const sonject_box *label, size_t rows, size_t columns)
+/* Returns the part around a label of an image of rows x columns. A highlight's shadow lies outside
+ * of its label, on either side. */
+static sonject_box chip_window(const sonject_box *label, uint32_t part, size_t rows, size_t columns)
 {
-    return box_with_margin(label, CHIP_MARGIN, rows, columns);
+    const sonject_box near = box_with_margin(label, CHIP_MARGIN, rows, columns);
+    sonject_box window = near;
+    if (part == LABELLED_HIGHLIGHT) {
+        window = box_with_margin(label, SHADOW_REACH + CHIP_MARGIN, rows, columns);
+        window.first_row = near.first_row;
+        window.rows = near.rows;
+    }
+    return window;
 }
 
 /* Cuts the intensities of a window out of pixels with `columns` columns a row, so that range grows
@@ -259,7 +265,8 @@ sonject_status contact_chip_read(struct sonject_campaign *campaign, const char *
                              (unsigned long long)layout->rows, (unsigned long long)layout->columns,
                              (unsigned long long)label->first_row,
                              (unsigned long long)label->first_column);
-    const sonject_box window = chip_window(label, (size_t)layout->rows, (size_t)layout->columns);
+    const sonject_box window =
+        chip_window(label, contact->part, (size_t)layout->rows, (size_t)layout->columns);
     const sonject_box all = {0, 0, window.rows, window.columns};
     sonject_box inner = *label;
     inner.first_row -= window.first_row;
@@ -302,7 +309,7 @@ sonject_status contact_chip_of_image(struct report *report, const struct campaig
     if (!*is_seen)
         return SONJECT_OK;
     const sonject_box label = box_with_margin(box, (size_t)pad, result->rows, result->columns);
-    const sonject_box window = chip_window(&label, result->rows, result->columns);
+    const sonject_box window = chip_window(&label, part, result->rows, result->columns);
     CHECK(cut_chip(report, result->image, result->is_complex, result->columns, &window, &label,
                    &image->scene.geometry, (size_t)image->plan.chip.first_column, result->ceiling,
                    chip));
