@@ -66,7 +66,7 @@ static void leave_out_shadows(struct fit *fit)
         seen, fit->real_count);
     report_note(fit->report, "%s", note);
     growing_text_add(&fit->notes, "%s\n", note);
-    fit->draws.contacts_lack_shadows = true;
+    fit->draws.unseen = FITTED_BIT(FITTED_HEIGHT) | FITTED_BIT(FITTED_FLOOR);
     for (size_t i = 0; i < fit->real_count; i++) {
         fit->real[i].shadow_visibility_db = NAN;
         for (size_t k = 0; k < COUNT(of_shadows); k++)
@@ -137,7 +137,7 @@ static sonject_status take_contacts(struct fit *fit)
     return quantile_goals(fit->report, fit->real, fit->real_count, fit->goals);
 }
 
-/* Takes goals from published quantiles. */
+/* Takes goals from published quantiles. What they do not tell stays. */
 static void take_quantiles(struct fit *fit)
 {
     static const enum extent extents[] = {EXTENT_HIGHLIGHT_ALONG, EXTENT_HIGHLIGHT_SLANT,
@@ -158,6 +158,15 @@ static void take_quantiles(struct fit *fit)
         for (size_t i = 0; i < goal->levels; i++)
             goal->error[i] = quantile_error(goal->level[i], half, told->contacts);
     }
+    const bool tells_height = fit->goals[EXTENT_SHADOW_SLANT].levels > 0;
+    fit->draws.unseen = FITTED_BIT(FITTED_LEVEL) | FITTED_BIT(FITTED_FLOOR) |
+                        (tells_height ? 0 : FITTED_BIT(FITTED_HEIGHT));
+    const char *note = tells_height
+                           ? "published extents tell no levels and no noise floor; these stay"
+                           : "published extents tell no levels, no noise floor and, without "
+                             "shadow_range, no heights; these stay";
+    report_note(fit->report, "%s", note);
+    growing_text_add(&fit->notes, "%s\n", note);
 }
 
 /* ---- The whole. */
@@ -209,7 +218,9 @@ static sonject_status write_all(const struct fit *fit, const char *fitted, const
     char *text;
     snprintf(comment, sizeof comment, "# Fitted by sonject %s to %s: draws of sizes%s.\n",
              sonject_version(), text_excerpt(name, sizeof name, path_name(contacts)),
-             fit->draws.contacts_lack_shadows ? " and levels" : ", levels and the noise floor");
+             fit->draws.unseen & FITTED_BIT(FITTED_LEVEL)   ? ""
+             : fit->draws.unseen & FITTED_BIT(FITTED_FLOOR) ? " and levels"
+                                                            : ", levels and the noise floor");
     CHECK(fit_draws_text(&fit->draws, fit->report, &fit->selection, comment, &text));
     sonject_status status = fit_page_write(fit, fitted);
     THEN(status, file_write_whole(fit->report, fitted, text, strlen(text)));

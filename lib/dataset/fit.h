@@ -65,10 +65,12 @@ struct fitted_selection {
     struct ratio_limits *swaths;    /* limits of each swath; NULL: none */
 };
 
+#define FITTED_BIT(kind) (UINT32_C(1) << (kind))
+
 /* The draws that a fit moves; the campaign must outlive them. Starts as zeros; for fit_draws_clear.
  */
 struct fit_draws {
-    bool contacts_lack_shadows;      /* contacts lack shadows: what only shadows show stays */
+    uint32_t unseen; /* kinds that the contacts do not show, as FITTED_BIT: they stay */
     const struct campaign *campaign; /* borrowed */
     char *text;                      /* text of the campaign's file; owned */
     struct fitted_number *numbers;   /* owned */

@@ -10,8 +10,7 @@
 #include "base/units.h"
 #include "dataset/fit.h"
 
-#define BIT(kind)  (UINT32_C(1) << (kind))
-#define ALL_SIZES  (BIT(FITTED_LENGTH) | BIT(FITTED_WIDTH) | BIT(FITTED_HEIGHT))
+#define ALL_SIZES  (FITTED_BIT(FITTED_LENGTH) | FITTED_BIT(FITTED_WIDTH) | FITTED_BIT(FITTED_HEIGHT))
 #define LEVEL_KEY  "level.over_seabed"
 #define FLOOR_KEY  "injection.noise_floor"
 #define RATIO_KEY  "range_over_altitude"
@@ -23,9 +22,10 @@ static uint32_t kinds_of_key(const char *key, const struct draws *draws, const s
     static const struct {
         const char *key;
         uint32_t kinds;
-    } sizes[] = {{"length", BIT(FITTED_LENGTH)},       {"width", BIT(FITTED_WIDTH)},
-                 {"height", BIT(FITTED_HEIGHT)},       {"front_height", BIT(FITTED_HEIGHT)},
-                 {"burial.proud", BIT(FITTED_HEIGHT)}, {LEVEL_KEY, BIT(FITTED_LEVEL)}};
+    } sizes[] = {
+        {"length", FITTED_BIT(FITTED_LENGTH)},       {"width", FITTED_BIT(FITTED_WIDTH)},
+        {"height", FITTED_BIT(FITTED_HEIGHT)},       {"front_height", FITTED_BIT(FITTED_HEIGHT)},
+        {"burial.proud", FITTED_BIT(FITTED_HEIGHT)}, {LEVEL_KEY, FITTED_BIT(FITTED_LEVEL)}};
     for (size_t i = 0; i < COUNT(sizes); i++)
         if (strcmp(key, sizes[i].key) == 0)
             return sizes[i].kinds;
@@ -111,18 +111,12 @@ static sonject_status add_distribution(struct fit_draws *draws, struct report *r
     return SONJECT_OK;
 }
 
-/* Returns the kinds that are observed. Without shadows, heights and the floor are not. */
-static uint32_t observed_kinds(const struct fit_draws *draws)
-{
-    return draws->contacts_lack_shadows ? ~(BIT(FITTED_HEIGHT) | BIT(FITTED_FLOOR)) : UINT32_MAX;
-}
-
 /* Finds the draws of a section of the file: an item's, or the campaign's. */
 static sonject_status find_in_section(struct fit_draws *draws, struct report *report,
                                       const struct tree_node *section, const char *path,
                                       const struct draws *list, const struct item *item)
 {
-    const uint32_t observed = observed_kinds(draws);
+    const uint32_t observed = ~draws->unseen;
     for (size_t i = 0; i < section->count; i++) {
         const struct tree_entry *entry = &section->entries[i];
         const bool is_floor = !item && strcmp(entry->key, FLOOR_KEY) == 0;
@@ -139,7 +133,7 @@ static sonject_status find_in_section(struct fit_draws *draws, struct report *re
         if (item && strcmp(key, "level.target_strength") == 0)
             return tree_failure(&draws->campaign->tree, entry->place, like.key,
                                 "fit moves levels over the seabed; draw " LEVEL_KEY " instead");
-        like.kinds = is_floor                ? BIT(FITTED_FLOOR)
+        like.kinds = is_floor                ? FITTED_BIT(FITTED_FLOOR)
                      : item || is_of_objects ? kinds_of_key(key, list, item)
                                              : 0;
         like.kinds &= observed;
@@ -172,7 +166,7 @@ static void note_fixed(struct fit_draws *draws, const struct item *item, size_t 
     uint32_t moved = 0;
     for (size_t i = 0; i < draws->count; i++)
         moved |= i < of_all || i >= first ? draws->numbers[i].kinds : 0;
-    const uint32_t fixed = ALL_SIZES & observed_kinds(draws) & ~moved;
+    const uint32_t fixed = ALL_SIZES & ~draws->unseen & ~moved;
     if (!fixed)
         return;
     growing_text_add(&draws->fixed, "%s%s",
@@ -181,7 +175,7 @@ static void note_fixed(struct fit_draws *draws, const struct item *item, size_t 
                          : "sizes that are fixed or come from a table are not fitted: ",
                      item->class_name);
     for (uint32_t k = 0; k < COUNT(names); k++)
-        if (fixed & BIT(k)) {
+        if (fixed & FITTED_BIT(k)) {
             growing_text_add(&draws->fixed, "%s%s", before, names[k]);
             before = ", ";
         }
@@ -205,7 +199,7 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
     draws->floor_db = NAN;
     CHECK(file_read_whole(report, campaign->path, TREE_BYTES_MAX, &draws->text, &bytes));
     draws->lacks_floor =
-        !draws->contacts_lack_shadows && !draws_have_key(&campaign->draws, FLOOR_KEY);
+        !(draws->unseen & FITTED_BIT(FITTED_FLOOR)) && !draws_have_key(&campaign->draws, FLOOR_KEY);
     if (drawn)
         CHECK(find_in_section(draws, report, drawn, "draw", &campaign->object_draws, NULL));
     const size_t of_all = draws->count;
@@ -216,6 +210,7 @@ sonject_status fit_draws_find(struct fit_draws *draws, struct report *report,
         char path[48];
         snprintf(path, sizeof path, "targets[%u].draw", (unsigned)i);
         draws->lacks_level[i] =
+            !(draws->unseen & FITTED_BIT(FITTED_LEVEL)) &&
             !draws_have_key(&item->draws, LEVEL_KEY) &&
             (item_fixes(item, LEVEL_KEY) || !draws_have_key(&campaign->object_draws, LEVEL_KEY));
         if (strstr(item->object, "\"target_strength\": "))
@@ -245,7 +240,7 @@ static struct draw_move mean_move(const struct draw_move *moves, uint32_t kinds)
     struct draw_move mean = {0.0, 0.0, 0.0};
     double count = 0.0;
     for (uint32_t k = 0; k < FITTED_KINDS; k++)
-        if (kinds & BIT(k)) {
+        if (kinds & FITTED_BIT(k)) {
             mean.centre += moves[k].centre;
             mean.shift += moves[k].shift;
             mean.stretch += log(moves[k].stretch);

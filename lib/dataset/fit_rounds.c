@@ -88,8 +88,8 @@ static sonject_status open_first(struct fit *fit, struct sonject_campaign **open
     return status;
 }
 
-/* Keeps the drawn values of a contact. A height that is not observed is kept constant, so that a
- * sphere's height takes no part of the diameter that its highlight shows. */
+/* Keeps the drawn values of a contact. Kinds that are not observed are kept constant, so that, for
+ * one, a sphere's height takes no part of the diameter that its highlight shows. */
 static void note_drawn(const struct fit *fit, const struct campaign_image *image,
                        struct drawn_contact *contact)
 {
@@ -98,9 +98,12 @@ static void note_drawn(const struct fit *fit, const struct campaign_image *image
     double *drawn = contact->drawn;
     drawn[FITTED_LENGTH] = log(truth->overall_length_m);
     drawn[FITTED_WIDTH] = log(truth->overall_width_m);
-    drawn[FITTED_HEIGHT] = fit->draws.contacts_lack_shadows ? 0.0 : log(fmax(proud, 1e-3));
+    drawn[FITTED_HEIGHT] = log(fmax(proud, 1e-3));
     drawn[FITTED_LEVEL] = truth->over_seabed_db;
     drawn[FITTED_FLOOR] = image->result.statistics.noise_floor_db;
+    for (int kind = 0; kind < FITTED_KINDS; kind++)
+        if (fit->draws.unseen & FITTED_BIT(kind))
+            drawn[kind] = 0.0;
     contact->heading_rad = image->scene.objects[0].heading_rad;
     memcpy(contact->now, drawn, sizeof contact->now);
 }
@@ -328,7 +331,7 @@ static void tell_cut_shadows(struct fit *fit, size_t first)
     const double made =
         cut_share(&fit->made[first].shown, sizeof *fit->made, fit->made_count - first);
     char note[200];
-    if (fit->draws.contacts_lack_shadows || made < real + CUT_MOST)
+    if ((fit->draws.unseen & FITTED_BIT(FITTED_HEIGHT)) || made < real + CUT_MOST)
         return;
     snprintf(
         note, sizeof note,

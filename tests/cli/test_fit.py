@@ -134,6 +134,26 @@ def test_bright_points_tell_no_heights(sonject, folder):
     assert "seabed_1.tif tells other spacings" in done.stderr and len(told) == len(set(told))  # not in every round
 
 
+def test_published_extents_move_what_they_tell(sonject, folder):
+    """Shadows along the track tell lengths, but neither heights nor levels nor the noise floor."""
+    start = fitting.campaign(fitting.START, 40, 3, 64, 96, ("box",), ROUGH)
+    (folder / "start.yaml").write_text(start)
+    (folder / "published.yaml").write_text(
+        "quantiles: [0.1, 0.5, 0.9]\ncontacts: 80\nshadow_along: [0.5 m, 0.9 m, 1.8 m]\n")
+    done = sonject.done("fit", "start.yaml", "published.yaml", "-o", "fitted.yaml")
+    text = (folder / "fitted.yaml").read_text()
+    note = ("published extents tell no levels, no noise floor and, without shadow_range, no heights; these stay")
+    assert done.stderr.count(note) == 1
+    page = page_data(folder, "fitted.html")
+    assert note in page["notes"]
+    moved = {draw["key"].rpartition(".")[2] for draw in page["draws"]}
+    assert moved == {"length", "width"}
+    kept = [line for line in start.splitlines() if "length:" not in line and "width:" not in line]
+    assert [line for line in kept if line not in text] == []
+    low, high = re.search(r"length: {log_uniform: \[([0-9.]+) m, ([0-9.]+) m", text).groups()
+    assert float(low) * float(high) < 0.6 * 1.4 * 3.2  # their medians are 0.9 m and 2.1 m
+
+
 def test_contacts_of_a_swath_have_the_ranges_of_the_scene_and_their_shadows(sonject, folder):
     """The seabeds' files say that range begins at 44 m, and the scene says 30 m, as injected contacts have it.
     Labels of highlights leave out the shadows, which are up to 150 pixels long."""
