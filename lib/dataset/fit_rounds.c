@@ -317,8 +317,9 @@ static double cut_share(const struct contact_extents *extents, size_t stride, si
     for (size_t i = 0; i < count; i++) {
         struct contact_extents of;
         memcpy(&of, (const char *)extents + i * stride, sizeof of);
-        seen += isfinite(of.of[EXTENT_SHADOW_HEIGHT]);
-        cut += isfinite(of.of[EXTENT_SHADOW_HEIGHT]) && of.is_shadow_cut;
+        const bool is_seen = isfinite(of.of[EXTENT_SHADOW_HEIGHT]);
+        seen += is_seen;
+        cut += is_seen && of.is_shadow_cut;
     }
     return seen > 0 ? (double)cut / (double)seen : 0.0;
 }
