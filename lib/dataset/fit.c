@@ -46,6 +46,12 @@ static sonject_status measure_real(struct fit *fit)
     return SONJECT_OK;
 }
 
+void fit_note(struct fit *fit, const char *note)
+{
+    report_note(fit->report, "%s", note);
+    growing_text_add(&fit->notes, "%s\n", note);
+}
+
 /* Leaves shadows out where fewer real contacts show one than an extent needs, or fewer than a
  * third. Up to a fifth of bright points without a shadow have dark speckle that looks like one. */
 static void leave_out_shadows(struct fit *fit)
@@ -64,8 +70,7 @@ static void leave_out_shadows(struct fit *fit)
         note, sizeof note,
         "only %zu of %zu contacts show a shadow, so heights and the noise floor stay as they are",
         seen, fit->real_count);
-    report_note(fit->report, "%s", note);
-    growing_text_add(&fit->notes, "%s\n", note);
+    fit_note(fit, note);
     fit->draws.unseen = FITTED_BIT(FITTED_HEIGHT) | FITTED_BIT(FITTED_FLOOR);
     for (size_t i = 0; i < fit->real_count; i++) {
         fit->real[i].shadow_visibility_db = NAN;
@@ -165,8 +170,7 @@ static void take_quantiles(struct fit *fit)
                            ? "published extents tell no levels and no noise floor; these stay"
                            : "published extents tell no levels, no noise floor and, without "
                              "shadow_range, no heights; these stay";
-    report_note(fit->report, "%s", note);
-    growing_text_add(&fit->notes, "%s\n", note);
+    fit_note(fit, note);
 }
 
 /* ---- The whole. */

@@ -126,6 +126,9 @@ struct fit {
     struct growing_text notes; /* notes on the page, one a line; owned */
 };
 
+/* Tells a note in the log and on the page. */
+void fit_note(struct fit *fit, const char *note);
+
 /* Runs all rounds: makes and measures contacts, and moves the draws. progress: NULL, or called with
  * `user`. Errors: those of campaigns, CANCELLED. */
 sonject_status fit_run_rounds(struct fit *fit, struct device_slot *slot,

@@ -80,10 +80,8 @@ static sonject_status open_first(struct fit *fit, struct sonject_campaign **open
             fit->selection.swaths = NULL;
         }
         status = open_round(fit, 0, opened);
-        if (status == SONJECT_OK) {
-            report_note(fit->report, "%s", notes[i]);
-            growing_text_add(&fit->notes, "%s\n", notes[i]);
-        }
+        if (status == SONJECT_OK)
+            fit_note(fit, notes[i]);
     }
     return status;
 }
@@ -339,8 +337,7 @@ static void tell_cut_shadows(struct fit *fit, size_t first)
         "the campaign's images cut %.0f %% of the injected shadows, far more than of real ones, "
         "so heights come out too great: fit with larger images (chip.columns)",
         100.0 * made);
-    report_note(fit->report, "%s", note);
-    growing_text_add(&fit->notes, "%s\n", note);
+    fit_note(fit, note);
 }
 
 sonject_status fit_run_rounds(struct fit *fit, struct device_slot *slot,

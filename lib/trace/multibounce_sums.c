@@ -196,15 +196,22 @@ static void read_tile(const struct multibounce_sums *sums, size_t number, struct
     }
 }
 
-/* Returns the rows of tiles that lie in some strips. */
-static struct span tile_rows(const struct multibounce_sums *sums, struct span strips)
+/* The numbers of tiles: first...end - 1. */
+struct tile_range {
+    size_t first, end;
+};
+
+/* Returns the tiles that lie in some strips. */
+static struct tile_range tiles_in(const struct multibounce_sums *sums, struct span strips)
 {
     const struct span at = span_overlap(strips, sums->grid.strips);
-    struct span rows = {(at.first - sums->grid.strips.first) / TILE_STRIPS, 0};
-    if (at.count > 0)
-        rows.count =
-            (at.first + at.count - 1 - sums->grid.strips.first) / TILE_STRIPS + 1 - rows.first;
-    return rows;
+    struct tile_range tiles = {0, 0};
+    if (at.count > 0) {
+        const int32_t first = at.first - sums->grid.strips.first;
+        tiles.first = (size_t)(first / TILE_STRIPS) * sums->columns;
+        tiles.end = (size_t)((first + at.count - 1) / TILE_STRIPS + 1) * sums->columns;
+    }
+    return tiles;
 }
 
 struct span multibounce_bins_filled(const struct multibounce *multibounce,
@@ -213,9 +220,8 @@ struct span multibounce_bins_filled(const struct multibounce *multibounce,
     struct span bins = {0, 0};
     for (size_t k = 0; k < multibounce->count; k++) {
         const struct multibounce_sums *sums = &multibounce->sums[k];
-        const struct span rows = tile_rows(sums, strips);
-        const size_t first = (size_t)rows.first * sums->columns;
-        for (size_t i = first; i < first + (size_t)rows.count * sums->columns; i++)
+        const struct tile_range tiles = tiles_in(sums, strips);
+        for (size_t i = tiles.first; i < tiles.end; i++)
             if (sums->tiles[i])
                 bins = span_join(bins, span_overlap(region_of_tile(sums, i).bins, region->bins));
     }
@@ -230,9 +236,8 @@ void multibounce_read(const struct multibounce *multibounce, struct span strips,
     memset(imaginary_part, 0, bytes);
     for (size_t k = 0; k < multibounce->count; k++) {
         const struct multibounce_sums *sums = &multibounce->sums[k];
-        const struct span rows = tile_rows(sums, strips);
-        const size_t first = (size_t)rows.first * sums->columns;
-        for (size_t i = first; i < first + (size_t)rows.count * sums->columns; i++)
+        const struct tile_range tiles = tiles_in(sums, strips);
+        for (size_t i = tiles.first; i < tiles.end; i++)
             if (sums->tiles[i])
                 read_tile(sums, i, strips, bins, real_part, imaginary_part);
     }
