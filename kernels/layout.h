@@ -399,6 +399,9 @@ struct relief_record {
     float lowest, highest; /* m; a little beyond all heights */
 };
 
+/* Boxes lie in rows of one face each: the lower faces along x, y, z, then the upper ones. */
+#define BOX_FACES 6
+
 /* The hierarchy over many objects. */
 #define OBJECTS_IN_LOOP    16 /* up to this number, objects are tested one after the other */
 #define OBJECTS_IN_PACKET  40 /* limit for rays that run apart from each other */
@@ -411,8 +414,7 @@ struct relief_record {
 
 /* A branch of the hierarchy: the boxes of its children about the tree's middle, m. */
 struct object_branch {
-    float lower_x[OBJECT_TREE_SLOTS], lower_y[OBJECT_TREE_SLOTS], lower_z[OBJECT_TREE_SLOTS];
-    float upper_x[OBJECT_TREE_SLOTS], upper_y[OBJECT_TREE_SLOTS], upper_z[OBJECT_TREE_SLOTS];
+    float faces[BOX_FACES][OBJECT_TREE_SLOTS];
     RECORD_INT child[OBJECT_TREE_SLOTS]; /* >= 0: number of a branch; < 0: ~ number of an object */
 };
 

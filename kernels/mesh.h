@@ -1,7 +1,7 @@
 /* Intersections of rays with a triangle mesh. A packet of WIDTH rays walks the hierarchy together.
- * Each ray walks alone through a part that only few reach. The nearest triangle is found; of
- * equally near ones, that of the lowest number. The order of the walk and the packet of a ray
- * therefore change nothing. */
+ * Rays of different headings walk alone, and so does each ray through a part that only few reach.
+ * The nearest triangle is found; of equally near ones, that of the lowest number. The order of the
+ * walk and the packet of a ray therefore change nothing. */
 #ifndef SONJECT_KERNELS_MESH_H
 #define SONJECT_KERNELS_MESH_H
 
@@ -35,37 +35,25 @@ struct mesh_stack {
     int count;
 };
 
-FUNCTION struct vector3 splat_point(float x, float y, float z)
+/* Returns one slot's vector for all rays, in their own axes, from rows of `slots`. */
+FUNCTION struct vector3 splat_rows(GLOBAL const float *values, int slots, const int rows[3],
+                                   int slot)
 {
-    struct vector3 point;
-    point.x = SPLAT(x);
-    point.y = SPLAT(y);
-    point.z = SPLAT(z);
-    return point;
+    struct vector3 v;
+    v.x = SPLAT(values[rows[0] * slots + slot]);
+    v.y = SPLAT(values[rows[1] * slots + slot]);
+    v.z = SPLAT(values[rows[2] * slots + slot]);
+    return v;
 }
 
-/* Returns the distance at which each ray enters a box that is the same for all of them. */
-FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                             struct vector3 lower, struct vector3 upper, vfloat maximum)
+/* Returns which rays meet the box of a slot; *entry: see meets_box. */
+FUNCTION mask packet_meets(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                           GLOBAL const float *faces, int slots, int slot, vfloat maximum,
+                           vfloat *entry)
 {
-    const int *downward = heading->downward;
-    struct vector3 first, last;
-    if (!heading->is_common)
-        return box_entry(ray, lower, upper, maximum);
-    first.x = downward[0] ? upper.x : lower.x;
-    first.y = downward[1] ? upper.y : lower.y;
-    first.z = downward[2] ? upper.z : lower.z;
-    last.x = downward[0] ? lower.x : upper.x;
-    last.y = downward[1] ? lower.y : upper.y;
-    last.z = downward[2] ? lower.z : upper.z;
-    return entry_by_faces(ray, first, last, maximum);
+    return meets_box(ray, splat_rows(faces, slots, heading->rows.first, slot),
+                     splat_rows(faces, slots, heading->rows.last, slot), maximum, entry);
 }
-
-/* Returns the packet's entry into box i of a branch, or of its groups. */
-#define ENTRY_OF(ray, heading, boxes, i, maximum)                                                  \
-    packet_entry(                                                                                  \
-        ray, heading, splat_point((boxes)->lower_x[i], (boxes)->lower_y[i], (boxes)->lower_z[i]),  \
-        splat_point((boxes)->upper_x[i], (boxes)->upper_y[i], (boxes)->upper_z[i]), maximum)
 
 /* Puts the group's children that some ray may meet on the stack, the farthest first. set: bits of
  * the slots to be tested. */
@@ -73,15 +61,17 @@ FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *
                          GLOBAL const struct mesh_branch *branch, int group, RECORD_WORD set,
                          vfloat maximum, struct mesh_stack *stack)
 {
-    const int step = heading->downward[branch->axes >> 2 * group & 3] ? 1 : -1;
+    const int step = runs_down(heading, branch->axes >> 2 * group & 3) ? 1 : -1;
     int slot = group * MESH_GROUP + (step > 0 ? 0 : MESH_GROUP - 1);
     for (int k = 0; k < MESH_GROUP; k++, slot += step) {
         if ((set >> slot & 1u) == 0)
             continue;
-        const vfloat entry = ENTRY_OF(ray, heading, branch, slot, maximum);
-        if (ANY(MASK_OF(entry < FAR_AWAY))) {
+        vfloat entry;
+        const mask is_met =
+            packet_meets(ray, heading, branch->faces[0], MESH_SLOTS, slot, maximum, &entry);
+        if (ANY(is_met)) {
             stack->child[stack->count] = branch->child[slot];
-            stack->entry[stack->count++] = entry;
+            stack->entry[stack->count++] = SELECT(is_met, entry, SPLAT(FAR_AWAY));
         }
     }
 }
@@ -91,8 +81,9 @@ FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_h
                                  GLOBAL const struct mesh_branch *branch, int group, vfloat maximum)
 {
     const int children = branch->children[group];
-    if (children > 1 &&
-        !ANY(MASK_OF(ENTRY_OF(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
+    vfloat entry;
+    if (children > 1 && !ANY(packet_meets(ray, heading, branch->group_faces[0], MESH_GROUPS, group,
+                                          maximum, &entry)))
         return 0;
     return ((1u << children) - 1u) << group * MESH_GROUP;
 }
@@ -101,28 +92,29 @@ FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading 
                           const struct ray_bounds *beam, GLOBAL const struct mesh_branch *branch,
                           vfloat maximum, struct mesh_stack *stack)
 {
-    const int is_beam = WIDTH > 1 && heading->is_common;
-    const RECORD_WORD met = is_beam ? CHILDREN_MET(beam, branch, MESH_SLOTS, SPLAT(FAR_AWAY)) : 0;
-    const int step = heading->downward[branch->axes >> 2 * MESH_GROUPS & 3] ? 1 : -1;
+    const RECORD_WORD met =
+        WIDTH > 1 ? boxes_met(beam, branch->faces[0], MESH_SLOTS, SPLAT(FAR_AWAY)) : 0;
+    const int step = runs_down(heading, branch->axes >> 2 * MESH_GROUPS & 3) ? 1 : -1;
     int group = step > 0 ? 0 : MESH_GROUPS - 1;
     for (int k = 0; k < MESH_GROUPS; k++, group += step) {
         const RECORD_WORD slots = (1u << MESH_GROUP) - 1u;
-        const RECORD_WORD set = is_beam ? met & slots << group * MESH_GROUP
-                                        : group_slots(ray, heading, branch, group, maximum);
+        const RECORD_WORD set = WIDTH > 1 ? met & slots << group * MESH_GROUP
+                                          : group_slots(ray, heading, branch, group, maximum);
         if (set != 0)
             open_group(ray, heading, branch, group, set, maximum, stack);
     }
 }
 
 /* Tests one triangle. is_any: a ray that meets something is done, and needs no distance. */
-FUNCTION void test_slot(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf, int slot,
-                        int number, int is_any, struct mesh_hit *hit)
+FUNCTION void test_slot(const struct mesh_ray *ray, const int axes[3],
+                        GLOBAL const struct mesh_leaf *leaf, int slot, int number, int is_any,
+                        struct mesh_hit *hit)
 {
     struct mesh_corners corners;
     vfloat distance;
-    corners.a = splat_point(leaf->a_x[slot], leaf->a_y[slot], leaf->a_z[slot]);
-    corners.b = splat_point(leaf->b_x[slot], leaf->b_y[slot], leaf->b_z[slot]);
-    corners.c = splat_point(leaf->c_x[slot], leaf->c_y[slot], leaf->c_z[slot]);
+    corners.a = splat_rows(leaf->a[0], MESH_SLOTS, axes, slot);
+    corners.b = splat_rows(leaf->b[0], MESH_SLOTS, axes, slot);
+    corners.c = splat_rows(leaf->c[0], MESH_SLOTS, axes, slot);
     mask is_nearest = meets_triangle(ray, &corners, &distance);
     if (!ANY(is_nearest))
         return;
@@ -139,12 +131,14 @@ FUNCTION void test_leaf(const struct mesh_ray *ray, const struct mesh_heading *h
                         struct mesh_hit *hit)
 {
     for (int first = 0, group = 0; first < leaf->triangles; first += MESH_GROUP, group++) {
-        if (!ANY(MASK_OF(ENTRY_OF(ray, heading, &leaf->groups, group, hit->distance) < FAR_AWAY)))
+        vfloat entry;
+        if (!ANY(packet_meets(ray, heading, leaf->group_faces[0], MESH_GROUPS, group, hit->distance,
+                              &entry)))
             continue;
         const int left = leaf->triangles - first;
         const int last = first + (left < MESH_GROUP ? left : MESH_GROUP);
         for (int slot = first; slot < last; slot++)
-            test_slot(ray, leaf, slot, first_number + slot, is_any, hit);
+            test_slot(ray, heading->axes, leaf, slot, first_number + slot, is_any, hit);
     }
 }
 
@@ -181,16 +175,22 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
                                    struct vector3 direction, vfloat minimum, vfloat maximum,
                                    int is_any)
 {
-    const struct mesh_ray ray = mesh_ray_of(point, direction, minimum, mesh.padding);
-    const struct mesh_heading heading = mesh_heading_of(&ray);
-    struct ray_bounds beam;
-    if (WIDTH > 1 && heading.is_common)
-        beam = mesh_beam_of(&ray, &heading);
+    const vint own_z = own_z_of(direction);
+    const struct mesh_ray ray = mesh_ray_of(point, direction, own_z, minimum, mesh.padding);
+    struct mesh_heading heading;
     struct mesh_hit hit;
     hit.distance = maximum;
     hit.triangle = SPLAT_VINT(-1);
     struct mesh_ray_lanes lanes;
     int has_lanes = 0;
+    if (!find_packet_heading(&ray, own_z, &heading)) {
+        store_mesh_ray(&ray, own_z, &lanes);
+        walk_each_ray(mesh, &lanes, 0, lane_bits(MASK_OF(minimum <= maximum)), is_any, &hit);
+        return hit;
+    }
+    struct ray_bounds beam;
+    if (WIDTH > 1)
+        beam = mesh_beam_of(&ray, &heading);
     struct mesh_stack stack;
     stack.count = 0;
     open_branch(&ray, &heading, &beam, mesh.branches, maximum, &stack);
@@ -202,7 +202,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
             continue;
         if (MESH_ALONE > 0 && has_at_most(set, MESH_ALONE)) {
             if (!has_lanes)
-                store_mesh_ray(&ray, &lanes);
+                store_mesh_ray(&ray, own_z, &lanes);
             has_lanes = 1;
             walk_each_ray(mesh, &lanes, child, set, is_any, &hit);
         } else if (child >= 0) {

@@ -1,33 +1,49 @@
-/* A beam: one set of bounds for a packet whose rays all run the same way along each axis. */
+/* A beam: one set of bounds for a packet whose rays share their own axes and run the same way along
+ * each of them. */
 #ifndef SONJECT_KERNELS_MESH_BEAM_H
 #define SONJECT_KERNELS_MESH_BEAM_H
 
 #include "mesh_single.h"
 
-/* The ways in which the rays of a packet run along the axes. */
+/* The way in which the rays of a packet run. */
 struct mesh_heading {
-    int downward[3]; /* the first ray runs down x, y, z; members are then visited from the upper
-                        end, which is only a matter of speed */
-    int is_common;   /* all rays run as the first does */
+    int axes[3];     /* the mesh's axes that are the rays' own x, y, z */
+    int downward[3]; /* the rays run down their own x, y, z: 0 or 1 */
+    struct face_rows rows;
 };
 
-/* Returns 1 if the first ray runs down the axis, else 0. Clears *is_common if some differ. */
-FUNCTION int runs_downward(vfloat inverse, int *is_common)
+/* Returns 1 if the mask is set for the first ray, else 0. Clears *is_common if it differs. */
+FUNCTION int common_flag(mask flag, int *is_common)
 {
     const RECORD_WORD all = ((1u << (WIDTH - 1)) - 1u) * 2u + 1u;
-    const RECORD_WORD downward = lane_bits(MASK_OF(inverse < 0.0f));
-    *is_common &= downward == 0u || downward == all;
-    return (int)(downward & 1u);
+    const RECORD_WORD flags = lane_bits(flag);
+    *is_common &= flags == 0u || flags == all;
+    return (int)(flags & 1u);
 }
 
-FUNCTION struct mesh_heading mesh_heading_of(const struct mesh_ray *ray)
+/* Finds the heading of a packet. Returns 0 if its rays have different headings. */
+FUNCTION int find_packet_heading(const struct mesh_ray *ray, vint own_z,
+                                 struct mesh_heading *heading)
 {
-    struct mesh_heading heading;
-    heading.is_common = 1;
-    heading.downward[0] = runs_downward(ray->inverse.x, &heading.is_common);
-    heading.downward[1] = runs_downward(ray->inverse.y, &heading.is_common);
-    heading.downward[2] = runs_downward(ray->inverse.z, &heading.is_common);
-    return heading;
+    int is_common = 1;
+    const int is_x = common_flag(MASK_OF(own_z == 0), &is_common);
+    const int is_y = common_flag(MASK_OF(own_z == 1), &is_common);
+    heading->downward[0] = common_flag(MASK_OF(ray->inverse.x < 0.0f), &is_common);
+    heading->downward[1] = common_flag(MASK_OF(ray->inverse.y < 0.0f), &is_common);
+    heading->downward[2] = common_flag(MASK_OF(ray->inverse.z < 0.0f), &is_common);
+    find_own_axes(is_x ? 0 : is_y ? 1 : 2, heading->axes);
+    heading->rows = face_rows_of(heading->axes, heading->downward[0], heading->downward[1],
+                                 heading->downward[2]);
+    return is_common;
+}
+
+/* Returns whether the packet's rays run down an axis of the mesh: 0 x, 1 y, 2 z. The members of a
+ * branch are then visited from the upper end, which is only a matter of speed. */
+FUNCTION int runs_down(const struct mesh_heading *heading, int axis)
+{
+    return axis == heading->axes[0]   ? heading->downward[0]
+           : axis == heading->axes[1] ? heading->downward[1]
+                                      : heading->downward[2];
 }
 
 FUNCTION void set_beam_axis(vfloat point, vfloat inverse, int is_downward, vfloat *to_first,
@@ -45,8 +61,7 @@ FUNCTION struct ray_bounds mesh_beam_of(const struct mesh_ray *ray,
                                         const struct mesh_heading *heading)
 {
     struct ray_bounds beam;
-    for (int axis = 0; axis < 3; axis++)
-        beam.downward[axis] = heading->downward[axis];
+    beam.rows = heading->rows;
     set_beam_axis(ray->point.x, ray->inverse.x, heading->downward[0], &beam.to_first.x,
                   &beam.to_last.x, &beam.least.x, &beam.most.x);
     set_beam_axis(ray->point.y, ray->inverse.y, heading->downward[1], &beam.to_first.y,

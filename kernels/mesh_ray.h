@@ -7,13 +7,14 @@
 #include "interval.h"
 #include "mesh_records.h"
 
+/* A ray in its own axes: the mesh's, turned in a circle until z is about the direction's largest
+ * component. */
 struct mesh_ray {
-    struct vector3 point;              /* closest to the frame's origin */
-    struct vector3 direction, inverse; /* unit; one over its components */
-    struct vector3 across, upward;     /* unit, square to direction */
-    struct vector3 seen;               /* the point in the axes across, upward, direction */
-    vfloat minimum;                    /* distance from the point beyond which hits count */
-    float padding; /* padding of a triangle's own box, half of that of other boxes, m */
+    struct vector3 point;    /* closest to the frame's origin */
+    struct vector3 inverse;  /* one over the direction's components */
+    vfloat shear_x, shear_y; /* the direction's x and y over its z */
+    vfloat minimum;          /* distance from the point beyond which hits count */
+    float padding;           /* padding of a triangle's own box, half of that of other boxes, m */
 };
 
 FUNCTION vfloat one_over_component(vfloat component)
@@ -31,26 +32,55 @@ FUNCTION struct vector3 one_over_components(struct vector3 direction)
     return inverse;
 }
 
-FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vfloat minimum,
-                                     float padding)
+/* Returns the mesh's axis that is z of the ray's own axes: 0 x, 1 y, 2 z. The factors keep the
+ * usual headings and grazing angles off the borders, so that the rays of a packet agree. */
+FUNCTION vint own_z_of(struct vector3 direction)
+{
+    const vfloat x = magnitude(direction.x);
+    const vfloat y = 0.83f * magnitude(direction.y);
+    const vfloat z = 0.71f * magnitude(direction.z);
+    const vint level = SELECT(MASK_OF(y > x), SPLAT_VINT(1), SPLAT_VINT(0));
+    return SELECT(MASK_OF(z > larger(x, y)), SPLAT_VINT(2), level);
+}
+
+/* Finds the mesh's axes that are the ray's own x, y and z. */
+FUNCTION void find_own_axes(int own_z, int axes[3])
+{
+    axes[0] = own_z < 2 ? own_z + 1 : 0;
+    axes[1] = own_z > 0 ? own_z - 1 : 2;
+    axes[2] = own_z;
+}
+
+/* Returns a vector of the mesh's axes in each ray's own. */
+FUNCTION struct vector3 in_own_axes(struct vector3 v, vint own_z)
+{
+    const mask is_x = MASK_OF(own_z == 0), is_y = MASK_OF(own_z == 1);
+    struct vector3 turned;
+    turned.x = SELECT(is_x, v.y, SELECT(is_y, v.z, v.x));
+    turned.y = SELECT(is_x, v.z, SELECT(is_y, v.x, v.y));
+    turned.z = SELECT(is_x, v.x, SELECT(is_y, v.y, v.z));
+    return turned;
+}
+
+FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vint own_z,
+                                     vfloat minimum, float padding)
 {
     struct mesh_ray ray;
-    ray.point = point;
-    ray.direction = direction;
-    ray.inverse = one_over_components(direction);
-    tangents3(direction, &ray.across, &ray.upward);
-    ray.seen.x = dot3(point, ray.across);
-    ray.seen.y = dot3(point, ray.upward);
-    ray.seen.z = dot3(point, direction);
+    const struct vector3 own = in_own_axes(direction, own_z);
+    ray.point = in_own_axes(point, own_z);
+    ray.inverse = one_over_components(own);
+    ray.shear_x = own.x * ray.inverse.z;
+    ray.shear_y = own.y * ray.inverse.z;
     ray.minimum = minimum;
     ray.padding = padding;
     return ray;
 }
 
-/* Returns the distance at which the ray enters the box, FAR_AWAY if it does not do so between its
- * minimum and `maximum`. first, last: the faces that it meets first and last along each axis. */
-FUNCTION vfloat entry_by_faces(const struct mesh_ray *ray, struct vector3 first,
-                               struct vector3 last, vfloat maximum)
+/* Returns whether the ray meets the box between its minimum and `maximum`. Sets *entry to the
+ * distance at which it enters the box. first, last: the faces that it meets first and last along
+ * each axis. */
+FUNCTION mask meets_box(const struct mesh_ray *ray, struct vector3 first, struct vector3 last,
+                        vfloat maximum, vfloat *entry)
 {
     const vfloat x_first = (first.x - ray->point.x) * ray->inverse.x;
     const vfloat y_first = (first.y - ray->point.y) * ray->inverse.y;
@@ -58,9 +88,9 @@ FUNCTION vfloat entry_by_faces(const struct mesh_ray *ray, struct vector3 first,
     const vfloat x_last = (last.x - ray->point.x) * ray->inverse.x;
     const vfloat y_last = (last.y - ray->point.y) * ray->inverse.y;
     const vfloat z_last = (last.z - ray->point.z) * ray->inverse.z;
-    const vfloat entry = larger(larger(x_first, y_first), larger(z_first, ray->minimum));
     const vfloat exit = smaller(smaller(x_last, y_last), smaller(z_last, maximum));
-    return SELECT(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
+    *entry = larger(larger(x_first, y_first), larger(z_first, ray->minimum));
+    return MASK_OF(*entry <= exit);
 }
 
 /* Returns where the ray's line is inside a box, whichever faces are met first. */
@@ -81,13 +111,31 @@ FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vect
     return inside;
 }
 
-/* Returns the same bits as entry_by_faces. */
-FUNCTION vfloat box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
-                          vfloat maximum)
+/* The rows of faces that rays meet first and last along each of their axes. */
+struct face_rows {
+    int first[3], last[3];
+};
+
+/* axes: those of the boxes that are the rays' own. down_x, down_y, down_z: whether the rays run
+ * down their own axes. */
+FUNCTION struct face_rows face_rows_of(const int axes[3], int down_x, int down_y, int down_z)
 {
-    const struct interval inside = interval_in_box(ray, lower, upper);
-    const vfloat entry = larger(inside.entry, ray->minimum);
-    return SELECT(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
+    struct face_rows rows;
+    rows.first[0] = down_x ? axes[0] + 3 : axes[0];
+    rows.first[1] = down_y ? axes[1] + 3 : axes[1];
+    rows.first[2] = down_z ? axes[2] + 3 : axes[2];
+    rows.last[0] = down_x ? axes[0] : axes[0] + 3;
+    rows.last[1] = down_y ? axes[1] : axes[1] + 3;
+    rows.last[2] = down_z ? axes[2] : axes[2] + 3;
+    return rows;
+}
+
+/* Loads a face of several boxes along each axis, from the box `slot` on. faces: rows of `slots`. */
+FUNCTION struct vector3 load_faces(GLOBAL const float *faces, int slots, const int rows[3],
+                                   int slot)
+{
+    return load_vector3(faces + rows[0] * slots, faces + rows[1] * slots, faces + rows[2] * slots,
+                        slot);
 }
 
 /* Bounds over rays that run the same way along each axis, equal in every lane. A box that the
@@ -98,25 +146,18 @@ struct ray_bounds {
                                          farthest from its last faces, along each axis */
     struct vector3 least, most;       /* bounds of the inverse directions */
     vfloat minimum;
-    int downward[3]; /* 0 or 1: the rays run down the axis */
+    struct face_rows rows;
 };
 
 /* Returns the boxes that some of the rays may meet before `reach`: bit i is box i of `slots`. */
-FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float *lower_x,
-                               GLOBAL const float *lower_y, GLOBAL const float *lower_z,
-                               GLOBAL const float *upper_x, GLOBAL const float *upper_y,
-                               GLOBAL const float *upper_z, int slots, vfloat reach)
+FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float *faces, int slots,
+                               vfloat reach)
 {
-    const int *down = rays->downward;
     const struct vector3 least = rays->least, most = rays->most;
     RECORD_WORD met = 0;
     for (int slot = 0; slot < slots; slot += WIDTH) {
-        const struct vector3 first =
-            load_vector3(down[0] ? upper_x : lower_x, down[1] ? upper_y : lower_y,
-                         down[2] ? upper_z : lower_z, slot);
-        const struct vector3 last =
-            load_vector3(down[0] ? lower_x : upper_x, down[1] ? lower_y : upper_y,
-                         down[2] ? lower_z : upper_z, slot);
+        const struct vector3 first = load_faces(faces, slots, rays->rows.first, slot);
+        const struct vector3 last = load_faces(faces, slots, rays->rows.last, slot);
         const vfloat x_first = first.x - rays->to_first.x;
         const vfloat y_first = first.y - rays->to_first.y;
         const vfloat z_first = first.z - rays->to_first.z;
@@ -135,31 +176,18 @@ FUNCTION RECORD_WORD boxes_met(const struct ray_bounds *rays, GLOBAL const float
     return met;
 }
 
-/* Returns the children of a branch that some of the rays may meet before `reach`, as bits. */
-#define CHILDREN_MET(rays, branch, slots, reach)                                                   \
-    boxes_met(rays, (branch)->lower_x, (branch)->lower_y, (branch)->lower_z, (branch)->upper_x,    \
-              (branch)->upper_y, (branch)->upper_z, slots, reach)
-
 struct mesh_corners {
     struct vector3 a, b, c;
 };
 
-FUNCTION struct mesh_corners leaf_corners(GLOBAL const struct mesh_leaf *leaf, int first)
-{
-    struct mesh_corners corners;
-    corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
-    corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
-    corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
-    return corners;
-}
-
-/* Returns a point as seen along the ray: across, upward and along it. */
+/* Returns a point, in the ray's own axes, as seen along the ray: sheared so that the ray runs along
+ * z from 0. */
 FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 point)
 {
     struct vector3 seen;
-    seen.x = dot3(point, ray->across) - ray->seen.x;
-    seen.y = dot3(point, ray->upward) - ray->seen.y;
-    seen.z = dot3(point, ray->direction) - ray->seen.z;
+    seen.z = point.z - ray->point.z;
+    seen.x = (point.x - ray->point.x) - ray->shear_x * seen.z;
+    seen.y = (point.y - ray->point.y) - ray->shear_y * seen.z;
     return seen;
 }
 
@@ -189,8 +217,8 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
     return interval_in_box(ray, lower, upper);
 }
 
-/* Finds the distance from the ray's point to the triangle, in *distance where the mask is set. Both
- * sides are met.
+/* Finds the distance from the ray's point to the triangle, in *distance where the mask is set.
+ * corners: in the ray's own axes. Both sides are met.
  *
  * No ray slips between triangles that share an edge. A corner as seen along the ray depends on
  * these two alone, so neighbours agree on it to the bit. An edge's function is the difference of
@@ -215,8 +243,9 @@ FUNCTION mask meets_triangle(const struct mesh_ray *ray, const struct mesh_corne
     *distance = SPLAT(FAR_AWAY);
     if (!ANY(is_met))
         return is_met;
-    const vfloat middle = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
-                          SELECT(is_met, sum, SPLAT(1.0f));
+    const vfloat depth = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
+                         SELECT(is_met, sum, SPLAT(1.0f));
+    const vfloat middle = depth * ray->inverse.z;
     const struct interval inside = corners_interval(ray, corners);
     *distance = smaller(larger(middle, inside.entry), inside.exit);
     return is_met & MASK_OF(inside.entry <= inside.exit);

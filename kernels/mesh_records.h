@@ -22,29 +22,21 @@
 /* The coordinate of the boxes of empty slots, which no ray reaches. */
 #define MESH_NOWHERE 1.0e30f
 
-struct mesh_group_boxes {
-    float lower_x[MESH_GROUPS], lower_y[MESH_GROUPS], lower_z[MESH_GROUPS];
-    float upper_x[MESH_GROUPS], upper_y[MESH_GROUPS], upper_z[MESH_GROUPS];
-};
-
 struct mesh_branch {
-    float lower_x[MESH_SLOTS], lower_y[MESH_SLOTS], lower_z[MESH_SLOTS];
-    float upper_x[MESH_SLOTS], upper_y[MESH_SLOTS], upper_z[MESH_SLOTS];
+    float faces[BOX_FACES][MESH_SLOTS];
     RECORD_INT child[MESH_SLOTS]; /* >= 0: number of a branch; < 0: ~ number of a leaf */
-    struct mesh_group_boxes groups;
+    float group_faces[BOX_FACES][MESH_GROUPS];
     RECORD_INT children[MESH_GROUPS]; /* number in each group, in its first slots; 0: no group */
     RECORD_INT axes; /* 2 bits each: the axis along which the members of groups 0...3 ascend, then
                         that of the groups; 0: x, 1: y, 2: z */
     RECORD_INT unused[3];
 };
 
-/* Corners a, b, c of each triangle, anticlockwise as seen from outside. The triangles fill the
- * first slots. The other slots hold zeros, which no ray meets. */
+/* The x, y and z of corners a, b, c of each triangle, anticlockwise as seen from outside. The
+ * triangles fill the first slots. The other slots hold zeros, which no ray meets. */
 struct mesh_leaf {
-    float a_x[MESH_SLOTS], a_y[MESH_SLOTS], a_z[MESH_SLOTS];
-    float b_x[MESH_SLOTS], b_y[MESH_SLOTS], b_z[MESH_SLOTS];
-    float c_x[MESH_SLOTS], c_y[MESH_SLOTS], c_z[MESH_SLOTS];
-    struct mesh_group_boxes groups;
+    float a[3][MESH_SLOTS], b[3][MESH_SLOTS], c[3][MESH_SLOTS];
+    float group_faces[BOX_FACES][MESH_GROUPS];
     RECORD_INT triangles;
     RECORD_INT unused[7];
 };

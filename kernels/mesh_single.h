@@ -16,21 +16,21 @@ struct mesh_view {
 
 /* The values of all lanes of a packet, to be read one by one. */
 struct mesh_ray_lanes {
-    float point[3][WIDTH], direction[3][WIDTH], inverse[3][WIDTH];
-    float across[3][WIDTH], upward[3][WIDTH], seen[3][WIDTH];
+    float point[3][WIDTH], inverse[3][WIDTH];
+    float shear_x[WIDTH], shear_y[WIDTH];
     float minimum[WIDTH];
+    int own_z[WIDTH];
     float padding;
 };
 
-FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *lanes)
+FUNCTION void store_mesh_ray(const struct mesh_ray *ray, vint own_z, struct mesh_ray_lanes *lanes)
 {
     store_vector3(ray->point, lanes->point);
-    store_vector3(ray->direction, lanes->direction);
     store_vector3(ray->inverse, lanes->inverse);
-    store_vector3(ray->across, lanes->across);
-    store_vector3(ray->upward, lanes->upward);
-    store_vector3(ray->seen, lanes->seen);
+    STORE_VFLOAT(ray->shear_x, lanes->shear_x);
+    STORE_VFLOAT(ray->shear_y, lanes->shear_y);
     STORE_VFLOAT(ray->minimum, lanes->minimum);
+    STORE_VINT(own_z, lanes->own_z);
     lanes->padding = ray->padding;
 }
 
@@ -39,11 +39,9 @@ FUNCTION struct mesh_ray one_mesh_ray(const struct mesh_ray_lanes *lanes, int la
 {
     struct mesh_ray ray;
     ray.point = splat_vector3(lanes->point, lane);
-    ray.direction = splat_vector3(lanes->direction, lane);
     ray.inverse = splat_vector3(lanes->inverse, lane);
-    ray.across = splat_vector3(lanes->across, lane);
-    ray.upward = splat_vector3(lanes->upward, lane);
-    ray.seen = splat_vector3(lanes->seen, lane);
+    ray.shear_x = SPLAT(lanes->shear_x[lane]);
+    ray.shear_y = SPLAT(lanes->shear_y[lane]);
     ray.minimum = SPLAT(lanes->minimum[lane]);
     ray.padding = lanes->padding;
     return ray;
@@ -54,39 +52,51 @@ struct single_hit {
     int triangle; /* -1: none */
 };
 
-/* The children still to be visited, and the distances to their boxes. */
+/* The children still to be visited, and the distances to their boxes. Of the children of a branch,
+ * the nearest lies last. */
 struct single_stack {
     int child[MESH_STACK];
     float entry[MESH_STACK];
     int count;
 };
 
-FUNCTION void open_branch_single(const struct mesh_ray *ray,
+FUNCTION void open_branch_single(const struct mesh_ray *ray, const struct face_rows *rows,
                                  GLOBAL const struct mesh_branch *branch, float maximum,
                                  struct single_stack *stack)
 {
+    GLOBAL const float *faces = branch->faces[0];
+    const int bottom = stack->count;
     for (int first = 0; first < MESH_SLOTS; first += WIDTH) {
-        const vfloat entry = box_entry(
-            ray, load_vector3(branch->lower_x, branch->lower_y, branch->lower_z, first),
-            load_vector3(branch->upper_x, branch->upper_y, branch->upper_z, first), SPLAT(maximum));
-        RECORD_WORD met = lane_bits(MASK_OF(entry < FAR_AWAY));
+        vfloat entry;
+        RECORD_WORD met = lane_bits(
+            meets_box(ray, load_faces(faces, MESH_SLOTS, rows->first, first),
+                      load_faces(faces, MESH_SLOTS, rows->last, first), SPLAT(maximum), &entry));
         if (met == 0)
             continue;
         float entries[WIDTH];
         STORE_VFLOAT(entry, entries);
         for (; met != 0; met &= met - 1) {
             const int lane = lowest_bit(met);
-            stack->child[stack->count] = branch->child[first + lane];
-            stack->entry[stack->count++] = entries[lane];
+            int place = stack->count++;
+            for (; place > bottom && stack->entry[place - 1] < entries[lane]; place--) {
+                stack->child[place] = stack->child[place - 1];
+                stack->entry[place] = stack->entry[place - 1];
+            }
+            stack->child[place] = branch->child[first + lane];
+            stack->entry[place] = entries[lane];
         }
     }
 }
 
-FUNCTION void test_leaf_single(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf,
-                               int first_number, float minimum, struct single_hit *hit)
+FUNCTION void test_leaf_single(const struct mesh_ray *ray, const int axes[3],
+                               GLOBAL const struct mesh_leaf *leaf, int first_number, float minimum,
+                               struct single_hit *hit)
 {
     for (int first = 0; first < leaf->triangles; first += WIDTH) {
-        const struct mesh_corners corners = leaf_corners(leaf, first);
+        struct mesh_corners corners;
+        corners.a = load_faces(leaf->a[0], MESH_SLOTS, axes, first);
+        corners.b = load_faces(leaf->b[0], MESH_SLOTS, axes, first);
+        corners.c = load_faces(leaf->c[0], MESH_SLOTS, axes, first);
         vfloat distance;
         RECORD_WORD met = lane_bits(meets_triangle(ray, &corners, &distance));
         if (met == 0)
@@ -112,6 +122,11 @@ FUNCTION void walk_single_ray(struct mesh_view mesh, const struct mesh_ray_lanes
                               int child, int is_any, struct single_hit *hit)
 {
     const struct mesh_ray ray = one_mesh_ray(lanes, lane);
+    int axes[3];
+    find_own_axes(lanes->own_z[lane], axes);
+    const struct face_rows rows =
+        face_rows_of(axes, lanes->inverse[0][lane] < 0.0f, lanes->inverse[1][lane] < 0.0f,
+                     lanes->inverse[2][lane] < 0.0f);
     struct single_stack stack;
     stack.count = 1;
     stack.child[0] = child;
@@ -122,11 +137,11 @@ FUNCTION void walk_single_ray(struct mesh_view mesh, const struct mesh_ray_lanes
             continue;
         const int number = stack.child[stack.count];
         if (number >= 0) {
-            open_branch_single(&ray, &mesh.branches[number], hit->distance, &stack);
+            open_branch_single(&ray, &rows, &mesh.branches[number], hit->distance, &stack);
             continue;
         }
-        test_leaf_single(&ray, &mesh.leaves[~number], ~number * MESH_SLOTS, lanes->minimum[lane],
-                         hit);
+        test_leaf_single(&ray, axes, &mesh.leaves[~number], ~number * MESH_SLOTS,
+                         lanes->minimum[lane], hit);
         if (is_any && hit->triangle >= 0)
             return;
     }

@@ -27,15 +27,11 @@ FUNCTION struct mesh_corners gather_corners(struct mesh_view mesh, const int *tr
         const int number = triangles[lane] < 0 ? 0 : triangles[lane];
         GLOBAL const struct mesh_leaf *leaf = &mesh.leaves[number / MESH_SLOTS];
         const int slot = number % MESH_SLOTS;
-        a[0][lane] = leaf->a_x[slot];
-        a[1][lane] = leaf->a_y[slot];
-        a[2][lane] = leaf->a_z[slot];
-        b[0][lane] = leaf->b_x[slot];
-        b[1][lane] = leaf->b_y[slot];
-        b[2][lane] = leaf->b_z[slot];
-        c[0][lane] = leaf->c_x[slot];
-        c[1][lane] = leaf->c_y[slot];
-        c[2][lane] = leaf->c_z[slot];
+        for (int axis = 0; axis < 3; axis++) {
+            a[axis][lane] = leaf->a[axis][slot];
+            b[axis][lane] = leaf->b[axis][slot];
+            c[axis][lane] = leaf->c[axis][slot];
+        }
     }
     struct mesh_corners corners;
     corners.a = load_lanes3(a);
@@ -115,12 +111,13 @@ FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vecto
 {
     int triangles[WIDTH];
     STORE_VINT(triangle, triangles);
-    const struct mesh_ray ray = mesh_ray_of(point, direction, SPLAT(0.0f), 0.0f);
+    const vint own_z = own_z_of(direction);
+    const struct mesh_ray ray = mesh_ray_of(point, direction, own_z, SPLAT(0.0f), 0.0f);
     const struct mesh_corners corners = gather_corners(mesh, triangles);
     struct mesh_corners seen;
-    seen.a = seen_along(&ray, corners.a);
-    seen.b = seen_along(&ray, corners.b);
-    seen.c = seen_along(&ray, corners.c);
+    seen.a = seen_along(&ray, in_own_axes(corners.a, own_z));
+    seen.b = seen_along(&ray, in_own_axes(corners.b, own_z));
+    seen.c = seen_along(&ray, in_own_axes(corners.c, own_z));
     const struct vector3 edges = edge_functions(&seen);
     const vfloat sum = edges.x + edges.y + edges.z;
     const mask is_met = MASK_OF(sum != 0.0f) & MASK_OF(triangle >= 0);

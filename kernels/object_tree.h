@@ -81,15 +81,17 @@ FUNCTION int beam_of_rays(GLOBAL const struct object_tree_record *tree, struct v
     const int lane = lowest_bit(lane_bits(is_ray));
     store_vector3(point, lanes);
     store_vector3(direction, ways);
-    beam->downward[0] =
+    const int down_x =
         bound_axis(point.x, direction.x, is_ray, lanes[0][lane], ways[0][lane], &beam->to_first.x,
                    &beam->to_last.x, &beam->least.x, &beam->most.x, &gap, &turn, &is_common);
-    beam->downward[1] =
+    const int down_y =
         bound_axis(point.y, direction.y, is_ray, lanes[1][lane], ways[1][lane], &beam->to_first.y,
                    &beam->to_last.y, &beam->least.y, &beam->most.y, &gap, &turn, &is_common);
-    beam->downward[2] =
+    const int down_z =
         bound_axis(point.z, direction.z, is_ray, lanes[2][lane], ways[2][lane], &beam->to_first.z,
                    &beam->to_last.z, &beam->least.z, &beam->most.z, &gap, &turn, &is_common);
+    const int axes[3] = {0, 1, 2};
+    beam->rows = face_rows_of(axes, down_x, down_y, down_z);
     beam->minimum = SPLAT(least_lane(SELECT(is_ray, minimum, SPLAT(FAR_AWAY))));
     return is_common && gap <= tree->grain && turn * tree->radius <= tree->grain;
 }
@@ -102,14 +104,18 @@ FUNCTION RECORD_WORD single_children(const struct tree_rays *rays, int lane,
     ray.point = splat_vector3(rays->point, lane);
     ray.inverse = splat_vector3(rays->inverse, lane);
     ray.minimum = SPLAT(rays->minimum[lane]);
+    const int axes[3] = {0, 1, 2};
+    const struct face_rows rows =
+        face_rows_of(axes, rays->inverse[0][lane] < 0.0f, rays->inverse[1][lane] < 0.0f,
+                     rays->inverse[2][lane] < 0.0f);
     const vfloat reach = SPLAT(rays->reach[lane]);
     RECORD_WORD met = 0;
     for (int slot = 0; slot < OBJECT_TREE_SLOTS; slot += WIDTH) {
-        const struct vector3 lower =
-            load_vector3(branch->lower_x, branch->lower_y, branch->lower_z, slot);
-        const struct vector3 upper =
-            load_vector3(branch->upper_x, branch->upper_y, branch->upper_z, slot);
-        met |= lane_bits(MASK_OF(box_entry(&ray, lower, upper, reach) < FAR_AWAY)) << slot;
+        vfloat entry;
+        const mask is_met = meets_box(
+            &ray, load_faces(branch->faces[0], OBJECT_TREE_SLOTS, rows.first, slot),
+            load_faces(branch->faces[0], OBJECT_TREE_SLOTS, rows.last, slot), reach, &entry);
+        met |= lane_bits(is_met) << slot;
     }
     return met;
 }
@@ -204,7 +210,7 @@ NOINLINE struct nearest_hit walk_objects(GLOBAL const struct object_record *obje
         RECORD_WORD met = 0;
         RECORD_WORD meeting[OBJECT_TREE_SLOTS];
         if (is_beam) {
-            met = CHILDREN_MET(&beam, branch, OBJECT_TREE_SLOTS, SPLAT(-least_lane(-reach)));
+            met = boxes_met(&beam, branch->faces[0], OBJECT_TREE_SLOTS, SPLAT(-least_lane(-reach)));
         } else {
             STORE_VFLOAT(reach, rays.reach);
             for (int slot = 0; slot < OBJECT_TREE_SLOTS; slot++)

@@ -98,6 +98,9 @@ FUNCTION RECORD_WORD UNION(mask m)
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 #ifdef NATIVE_KERNELS /* without it, tests compile in a fraction of the time */
 #define FUNCTION static inline __attribute__((always_inline))
@@ -158,7 +161,7 @@ typedef int32_t mask __attribute__((vector_size(4 * WIDTH)));
 #define AS_WORD(value)             ((word)(value))
 #define VFLOAT_OF(value)           __builtin_convertvector(value, vfloat)
 #define VINT_OF(value)             __builtin_convertvector(value, vint)
-#define SPLAT(value)               ((vfloat){0} + (float)(value))
+#define SPLAT(value)               ((float)(value) - (vfloat){0}) /* + would lose the sign of -0 */
 #define SPLAT_WORD(value)          ((word){0} + (uint32_t)(value))
 #define SPLAT_VINT(value)          ((vint){0} + (int32_t)(value))
 FUNCTION vfloat SQUARE_ROOT(vfloat value)
@@ -191,6 +194,14 @@ FUNCTION uint32_t UNION(mask m)
 #define ANY(m)                     (UNION(m) != 0)
 #define STORE_VFLOAT(value, array) memcpy(array, &(value), sizeof(vfloat))
 #define STORE_VINT(value, array)   memcpy(array, &(value), sizeof(vint))
+/* x86 has instructions for lane_bits, which walks through hierarchies call at every step. */
+#if WIDTH == 16 && defined(__AVX512DQ__)
+#define LANE_BITS(m) _mm512_movepi32_mask((__m512i)(m))
+#elif WIDTH == 8 && defined(__AVX2__)
+#define LANE_BITS(m) _mm256_movemask_ps((__m256)(m))
+#elif WIDTH == 4 && defined(__SSE2__)
+#define LANE_BITS(m) _mm_movemask_ps((__m128)(m))
+#endif
 #if WIDTH == 4
 #define LANE_NUMBERS ((word){0, 1, 2, 3})
 #define LANE_FLAGS   ((mask){1, 2, 4, 8})
@@ -237,7 +248,11 @@ FUNCTION RECORD_WORD count_lanes(mask m)
 /* Returns the mask as bits: bit i is lane i. */
 FUNCTION RECORD_WORD lane_bits(mask m)
 {
+#ifdef LANE_BITS
+    return (RECORD_WORD)LANE_BITS(m);
+#else
     return UNION(m & LANE_FLAGS);
+#endif
 }
 
 /* Returns the number of the lowest bit that is set. bits: not 0. */

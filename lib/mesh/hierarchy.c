@@ -342,14 +342,12 @@ static int sort_ranges(struct split_range *ranges, int count)
 static void fill_slot(const struct builder *builder, struct mesh_leaf *leaf, int slot,
                       uint32_t triangle)
 {
-    float *const slots[3][3] = {{leaf->a_x, leaf->a_y, leaf->a_z},
-                                {leaf->b_x, leaf->b_y, leaf->b_z},
-                                {leaf->c_x, leaf->c_y, leaf->c_z}};
-    for (size_t corner = 0; corner < 3; corner++)
-        for (size_t axis = 0; axis < 3; axis++)
-            slots[corner][axis][slot] =
-                builder
-                    ->vertices[3 * (size_t)builder->corners[3 * (size_t)triangle + corner] + axis];
+    const uint32_t *corners = &builder->corners[3 * (size_t)triangle];
+    for (size_t axis = 0; axis < 3; axis++) {
+        leaf->a[axis][slot] = builder->vertices[3 * (size_t)corners[0] + axis];
+        leaf->b[axis][slot] = builder->vertices[3 * (size_t)corners[1] + axis];
+        leaf->c[axis][slot] = builder->vertices[3 * (size_t)corners[2] + axis];
+    }
 }
 
 /* Brings triangles that lie together into the same group of four; all groups but the last are
@@ -391,7 +389,7 @@ static bool add_leaf(struct builder *builder, const struct split_range *range, i
         const size_t first = range->first + (size_t)group * MESH_GROUP;
         const size_t last = first + MESH_GROUP < range->last ? first + MESH_GROUP : range->last;
         const struct split_box box = split_box_of(builder->triangles, first, last);
-        SPLIT_BOX_STORE(&box, builder->padding, &leaf->groups, group);
+        SPLIT_BOX_STORE(&box, builder->padding, leaf->group_faces, group);
     }
     *child = ~(int32_t)number;
     return true;
@@ -425,10 +423,10 @@ static bool fill_group(struct builder *builder, const struct pending *pending,
     const int count = cut_in_four(builder, range, most_below(pending->level), children);
     branch->axes |= sort_ranges(children, count) << 2 * group;
     branch->children[group] = count;
-    SPLIT_BOX_STORE(&range->box, builder->padding, &branch->groups, group);
+    SPLIT_BOX_STORE(&range->box, builder->padding, branch->group_faces, group);
     for (int i = 0; i < count; i++) {
         const int slot = group * MESH_GROUP + i;
-        SPLIT_BOX_STORE(&children[i].box, builder->padding, branch, slot);
+        SPLIT_BOX_STORE(&children[i].box, builder->padding, branch->faces, slot);
         if (triangles_in(&children[i]) <= MESH_SLOTS
                 ? !add_leaf(builder, &children[i], &branch->child[slot])
                 : !add_branch(builder, &children[i], pending->level + 1, &branch->child[slot]))
@@ -445,7 +443,7 @@ static bool fill_branch(struct builder *builder, const struct pending *pending)
     struct mesh_branch branch;
     memset(&branch, 0, sizeof branch);
     for (int slot = 0; slot < MESH_SLOTS; slot++)
-        SPLIT_BOX_STORE(&nowhere, 0.0f, &branch, slot);
+        SPLIT_BOX_STORE(&nowhere, 0.0f, branch.faces, slot);
     const int count =
         cut_in_four(builder, &pending->range, MESH_GROUP * most_below(pending->level), groups);
     branch.axes = sort_ranges(groups, count) << 2 * MESH_GROUPS;

@@ -59,15 +59,13 @@ struct split_range {
 void split_box_unite(struct split_box *box, const struct split_box *other);
 struct split_box split_box_empty(void);
 
-/* Writes a box, its faces moved outwards, into a slot of a record with lower_x[]...upper_z[]. */
-#define SPLIT_BOX_STORE(box, padding, record, slot)                                                \
+/* Writes a box, its faces moved outwards, into a slot of rows of faces. */
+#define SPLIT_BOX_STORE(box, padding, faces, slot)                                                 \
     do {                                                                                           \
-        (record)->lower_x[slot] = (box)->edges[0] - (padding);                                     \
-        (record)->lower_y[slot] = (box)->edges[1] - (padding);                                     \
-        (record)->lower_z[slot] = (box)->edges[2] - (padding);                                     \
-        (record)->upper_x[slot] = -(box)->edges[4] + (padding);                                    \
-        (record)->upper_y[slot] = -(box)->edges[5] + (padding);                                    \
-        (record)->upper_z[slot] = -(box)->edges[6] + (padding);                                    \
+        for (size_t axis = 0; axis < 3; axis++) {                                                  \
+            (faces)[axis][slot] = (box)->edges[axis] - (padding);                                  \
+            (faces)[axis + 3][slot] = -(box)->edges[axis + 4] + (padding);                         \
+        }                                                                                          \
     } while (0)
 
 /* Returns half the surface; 0 for an empty box. */

@@ -110,7 +110,8 @@ static void fill_branch(struct builder *builder, const struct pending *pending)
     struct object_branch *branch = &builder->branches[pending->branch];
     const int count = cut_into_slots(builder, &pending->range, most_below(pending->level), parts);
     for (int slot = 0; slot < OBJECT_TREE_SLOTS; slot++) {
-        SPLIT_BOX_STORE(slot < count ? &parts[slot].box : &nowhere, builder->padding, branch, slot);
+        SPLIT_BOX_STORE(slot < count ? &parts[slot].box : &nowhere, builder->padding, branch->faces,
+                        slot);
         branch->child[slot] = -1;
         if (slot >= count)
             continue;

@@ -30,13 +30,13 @@ static void expect_inside(const struct box *inner, const struct box *outer, floa
     }
 }
 
-/* The box of a slot in a record with lower_x[]...upper_z[]. */
-#define BOX_OF(record, slot)                                                                       \
+/* The box of a slot in a rows of faces. */
+#define BOX_OF(faces, slot)                                                                        \
     (struct box)                                                                                   \
     {                                                                                              \
-        {(record)->lower_x[slot], (record)->lower_y[slot], (record)->lower_z[slot]},               \
+        {(faces)[0][slot], (faces)[1][slot], (faces)[2][slot]},                                    \
         {                                                                                          \
-            (record)->upper_x[slot], (record)->upper_y[slot], (record)->upper_z[slot]              \
+            (faces)[3][slot], (faces)[4][slot], (faces)[5][slot]                                   \
         }                                                                                          \
     }
 
@@ -63,18 +63,18 @@ static struct box check_leaf(struct tree_check *check, int number)
         }
         const float *a = &check->vertices[3 * (size_t)check->corners[3 * (size_t)triangle]];
         const float *c = &check->vertices[3 * (size_t)check->corners[3 * (size_t)triangle + 2]];
-        const float points[3][3] = {{leaf->a_x[slot], leaf->a_y[slot], leaf->a_z[slot]},
-                                    {leaf->b_x[slot], leaf->b_y[slot], leaf->b_z[slot]},
-                                    {leaf->c_x[slot], leaf->c_y[slot], leaf->c_z[slot]}};
+        const float points[3][3] = {{leaf->a[0][slot], leaf->a[1][slot], leaf->a[2][slot]},
+                                    {leaf->b[0][slot], leaf->b[1][slot], leaf->b[2][slot]},
+                                    {leaf->c[0][slot], leaf->c[1][slot], leaf->c[2][slot]}};
         struct box box = empty_box;
         for (int corner = 0; corner < 3; corner++)
             for (int axis = 0; axis < 3; axis++) {
                 box.lower[axis] = fminf(box.lower[axis], points[corner][axis]);
                 box.upper[axis] = fmaxf(box.upper[axis], points[corner][axis]);
             }
-        const struct box group = BOX_OF(&leaf->groups, slot / MESH_GROUP);
+        const struct box group = BOX_OF(leaf->group_faces, slot / MESH_GROUP);
         expect_inside(&box, &group, check->padding);
-        assert_true(leaf->a_x[slot] == a[0] && leaf->c_z[slot] == c[2]);
+        assert_true(leaf->a[0][slot] == a[0] && leaf->c[2][slot] == c[2]);
         assert_false(check->is_seen[triangle]);
         check->is_seen[triangle] = 1;
         check->seen++;
@@ -91,7 +91,7 @@ static struct box check_branch(struct tree_check *check, int number, unsigned le
     assert_in_range(level, 1, check->hierarchy->levels);
     check->branches++;
     for (int slot = 0; slot < MESH_SLOTS; slot++) {
-        const struct box box = BOX_OF(branch, slot);
+        const struct box box = BOX_OF(branch->faces, slot);
         const int child = branch->child[slot];
         if (slot % MESH_GROUP >= branch->children[slot / MESH_GROUP]) {
             assert_true(box.lower[0] == MESH_NOWHERE && box.upper[0] == MESH_NOWHERE);
@@ -99,7 +99,7 @@ static struct box check_branch(struct tree_check *check, int number, unsigned le
         }
         const struct box inside =
             child < 0 ? check_leaf(check, ~child) : check_branch(check, child, level + 1);
-        const struct box group = BOX_OF(&branch->groups, slot / MESH_GROUP);
+        const struct box group = BOX_OF(branch->group_faces, slot / MESH_GROUP);
         expect_inside(&inside, &box, check->padding);
         expect_inside(&inside, &group, check->padding);
         unite(&all, &inside);
