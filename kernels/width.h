@@ -66,6 +66,7 @@ typedef JOIN(int, WIDTH) mask;
 #endif
 #endif
 #define LOWEST_BIT(bits)   (31 - (int)clz((bits) & (0u - (bits))))
+#define COUNT_BITS(bits)   popcount(bits)
 #define SPLAT(value)       ((vfloat)(value))
 #define SPLAT_WORD(value)  ((word)(value))
 #define SPLAT_VINT(value)  ((vint)(value))
@@ -115,6 +116,7 @@ FUNCTION RECORD_WORD UNION(mask m)
 #define GLOBAL
 #define UNROLLED
 #define LOWEST_BIT(bits)   __builtin_ctz(bits)
+#define COUNT_BITS(bits)   (RECORD_WORD) __builtin_popcount(bits)
 #define ROOT_OF_ONE(value) sqrtf(value)
 #if WIDTH == 1
 typedef float vfloat;
@@ -234,17 +236,6 @@ FUNCTION vfloat magnitude(vfloat value)
     return AS_VFLOAT(AS_VINT(value) & 0x7fffffff);
 }
 
-/* Counts the lanes of the mask that are set. */
-FUNCTION RECORD_WORD count_lanes(mask m)
-{
-    int lanes[WIDTH];
-    STORE_VINT(m, lanes);
-    RECORD_WORD count = 0;
-    for (int lane = 0; lane < WIDTH; lane++)
-        count += lanes[lane] != 0;
-    return count;
-}
-
 /* Returns the mask as bits: bit i is lane i. */
 FUNCTION RECORD_WORD lane_bits(mask m)
 {
@@ -253,6 +244,12 @@ FUNCTION RECORD_WORD lane_bits(mask m)
 #else
     return UNION(m & LANE_FLAGS);
 #endif
+}
+
+/* Returns how many lanes of the mask are set. */
+FUNCTION RECORD_WORD count_lanes(mask m)
+{
+    return COUNT_BITS(lane_bits(m));
 }
 
 /* Returns the number of the lowest bit that is set. bits: not 0. */
