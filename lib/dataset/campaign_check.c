@@ -57,6 +57,7 @@ static sonject_status measure_rows(struct sonject_campaign *campaign, uint32_t n
         tell_other_geometry(campaign->report, swath->path, &geometry, &scene->geometry);
         geometry = scene->geometry; /* else that of all rows, as the file's picture has */
     }
+    tell_grey_levels(campaign->report, swath->path, noted.grey_db, &scene->transfer);
     double *altitudes = allocate_array(rows, sizeof *altitudes);
     CHECK_MEMORY(campaign->report, altitudes, "the altitudes");
     row_altitudes(scene, swath_file_recording(file), &(struct region){.rows = rows}, altitudes);

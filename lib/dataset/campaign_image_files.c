@@ -79,7 +79,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, struct rep
     static const char *const complex_names[] = {"real", "imag"};
     struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
     struct geometry_notes notes;
-    char ends[GREY_TEXT];
+    char ends[GREY_TEXT], full_scale[32];
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry);
@@ -91,6 +91,10 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, struct rep
         attributes[count++] = raster_make_grey(noting, &layout, stored, swath->full_scale,
                                                campaign->campaign.grey_db, ends);
         names = NULL;
+    } else if (swath->full_scale < pixel_full_scale(layout.type) ||
+               swath->full_scale > pixel_full_scale(layout.type)) {
+        snprintf(full_scale, sizeof full_scale, "%.0f", swath->full_scale);
+        attributes[count++] = (struct raster_attribute){FULL_SCALE_NOTE, full_scale};
     }
     const sonject_status status =
         quality > 0

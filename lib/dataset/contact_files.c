@@ -91,6 +91,18 @@ static char *find_file(const struct contact_reader *reader, const char *name, bo
     return NULL;
 }
 
+/* Returns a key of the file itself, since an image may have several names. No printable name is
+ * such a key. Returns the name where the system does not tell one file from another. */
+static const char *file_key(const char *path, const char *name, char *text, size_t capacity)
+{
+    struct path_facts facts;
+    if (path_facts_read(path, &facts) != 0 || facts.number == 0)
+        return name;
+    snprintf(text, capacity, "\n%llu %llu", (unsigned long long)facts.device,
+             (unsigned long long)facts.number);
+    return text;
+}
+
 sonject_status contact_reader_find_image(struct contact_reader *reader, const char *place,
                                          const char *name, uint32_t *number)
 {
@@ -110,13 +122,21 @@ sonject_status contact_reader_find_image(struct contact_reader *reader, const ch
                              "there is no image '%s', neither beside the labels nor in 'images' "
                              "below or beside them",
                              text_excerpt(excerpt, sizeof excerpt, name));
+    char text[64];
+    const char *key = path ? file_key(path, name, text, sizeof text) : name;
+    known = json_object_get(reader->images, key);
+    *number = known ? (uint32_t)json_integer_value(known) : (uint32_t)set->image_count;
     char **images = grow_doubling(set->images, set->image_count, sizeof *images);
     set->images = images ? images : set->images;
-    *number = (uint32_t)set->image_count;
     if (!path || !images ||
-        json_object_set_new_nocheck(reader->images, name, json_integer(*number)) != 0) {
+        json_object_set_new_nocheck(reader->images, name, json_integer(*number)) != 0 ||
+        json_object_set_new_nocheck(reader->images, key, json_integer(*number)) != 0) {
         free(path);
         return report_out_of_memory(reader->report, "contacts");
+    }
+    if (*number < set->image_count) {
+        free(path);
+        return SONJECT_OK;
     }
     set->images[set->image_count++] = path;
     return SONJECT_OK;

@@ -116,6 +116,21 @@ static sonject_status find_pixels(struct contact *contact, struct report *report
     return SONJECT_OK;
 }
 
+/* Returns whether the object has no highlight in the patch and may reach beyond the patch's edge,
+ * where its highlight then lies. */
+static bool may_show_outside(const sonject_object_truth *truth, const struct label_request *request)
+{
+    const sonject_geometry_params *geometry = &request->scene->geometry;
+    const double reach_m = 0.5 * hypot(hypot(truth->overall_length_m, truth->overall_width_m),
+                                       truth->overall_height_m);
+    const double rows = reach_m / geometry->row_spacing_m;
+    const double columns = reach_m / geometry->column_spacing_m;
+    return truth->highlight.rows == 0 &&
+           (truth->row - rows < -0.5 || truth->row + rows > (double)request->result->rows - 0.5 ||
+            truth->column - columns < -0.5 ||
+            truth->column + columns > (double)request->result->columns - 0.5);
+}
+
 static void describe(struct contact *contact, const struct label_request *request, uint32_t index)
 {
     const sonject_object_truth *truth = &request->result->objects[index];
@@ -124,7 +139,8 @@ static void describe(struct contact *contact, const struct label_request *reques
     contact->truth = truth;
     contact->row = truth->row + (double)request->patch.first_row;
     contact->column = truth->column + (double)request->patch.first_column;
-    contact->is_truncated = truth->highlight_is_cut || truth->shadow_is_cut;
+    contact->is_truncated =
+        truth->highlight_is_cut || truth->shadow_is_cut || may_show_outside(truth, request);
     contact->has_place =
         request->track &&
         track_place(request->track, contact->row, truth->ground_range_m,

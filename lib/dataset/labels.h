@@ -36,7 +36,7 @@ struct contact {
     uint64_t *runs; /* numbers of pixels outside and inside the object by turns, column after column
                        of the whole image, the first outside; owned */
     size_t run_count;
-    bool is_truncated; /* highlight or shadow reaches the edge of the patch */
+    bool is_truncated; /* highlight or shadow reaches the edge of the patch, or lies outside */
     bool is_occluded;  /* other objects hide some of its pixels */
     bool is_difficult; /* less visible than a campaign asks */
 };

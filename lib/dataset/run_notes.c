@@ -76,6 +76,7 @@ void tell_scene(struct report *report, const struct scene *scene, const struct s
 {
     if (swath->tells_geometry && !scene->has_files_geometry)
         tell_other_geometry(report, scene->input_path, &swath->files_geometry, &scene->geometry);
+    tell_grey_levels(report, scene->input_path, swath->grey_db, &scene->transfer);
     tell_sediment(report, scene);
     tell_altitudes(report, scene);
     tell_calibration_doubts(report, scene);

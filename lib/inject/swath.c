@@ -83,6 +83,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     swath_file_limit(file, &swath->transfer);
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
+    memcpy(swath->grey_db, noted.grey_db, sizeof swath->grey_db);
     swath->files_geometry = scene->geometry;
     swath->tells_geometry = geometry_notes_to_params(&noted, &swath->files_geometry);
     if (swath_file_range_axis(file) == RANGE_GROUND)

@@ -28,6 +28,7 @@ struct swath {
     double full_scale;   /* of the numbers that the file stores */
     bool tells_geometry; /* the file tells its geometry */
     sonject_geometry_params files_geometry;
+    double grey_db[2];         /* see struct noted_geometry */
     const char *new_extension; /* the image's; NULL: a copy of the input's file with other pixels */
     struct track track;        /* track of a recording */
     struct ping_list skipped;  /* a recording's pings that make no row */

@@ -113,10 +113,21 @@ static void read_texts(const struct swath_file *file, struct noted_geometry *geo
     geometry->side = is_starboard ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
 }
 
+static void read_grey_levels(const struct swath_file *file, double grey_db[2])
+{
+    char text[GREY_TEXT];
+    const char *rest;
+    if (!swath_file_attribute(file, GREY_ATTRIBUTE, text, sizeof text) ||
+        !text_to_number(text, &grey_db[0], &rest) || strncmp(rest, " dB, ", 5) != 0 ||
+        !text_to_number(rest + 5, &grey_db[1], &rest) || !(grey_db[0] < grey_db[1]))
+        grey_db[0] = grey_db[1] = 0.0;
+}
+
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry)
 {
     geometry->axis = swath_file_range_axis(file);
     geometry->full_scale = (double)swath_file_largest(file);
+    read_grey_levels(file, geometry->grey_db);
     if (swath_file_recording(file))
         read_recording(swath_file_recording(file), geometry);
     else
@@ -174,6 +185,16 @@ void tell_other_geometry(struct report *report, const char *path,
                     path, files->row_spacing_m, given->row_spacing_m, fabs(files->column_spacing_m),
                     fabs(given->column_spacing_m), files->first_slant_range_m,
                     given->first_slant_range_m);
+}
+
+void tell_grey_levels(struct report *report, const char *path, const double grey_db[2],
+                      const sonject_transfer_params *transfer)
+{
+    if (grey_db[0] < grey_db[1] && transfer->kind != SONJECT_TRANSFER_DECIBEL)
+        report_note(report,
+                    "%s says that its numbers are grey levels from %g to %g dB: set input.transfer "
+                    "to {kind: decibel, parameter: %g, offset: %g dB}",
+                    path, grey_db[0], grey_db[1], (grey_db[1] - grey_db[0]) / 255.0, grey_db[0]);
 }
 
 /* Finds the rows of the scene's patch in the file. A patch of all zeros means all rows. */

@@ -16,6 +16,7 @@ struct noted_geometry {
     double nadir_column;
     double altitude_m, frequency_hz, bandwidth_hz;
     double full_scale;    /* see FULL_SCALE_NOTE; 0: the type's */
+    double grey_db[2];    /* black and white of raster_make_grey; both 0: other numbers */
     bool altitude_varies; /* the altitude changes too much along the line for a mean */
     bool knows_side;
     uint32_t side; /* SONJECT_SIDE_... */
@@ -48,6 +49,10 @@ bool geometry_notes_to_params(const struct noted_geometry *noted,
 void tell_other_geometry(struct report *report, const char *path,
                          const sonject_geometry_params *files,
                          const sonject_geometry_params *given);
+
+/* Notes where a file's pixels are grey levels in dB and the scene's curve is another. */
+void tell_grey_levels(struct report *report, const char *path, const double grey_db[2],
+                      const sonject_transfer_params *transfer);
 
 /* The values that a scene leaves to its input. */
 struct recording_wish {

@@ -422,6 +422,21 @@ def test_grey_levels_are_not_of_decibels(command, ground):
         assert_refused(answer, 3, "grey: the numbers of swath0.png are dB already")
 
 
+@pytest.mark.parametrize("kind, largest", [("<i2", 32767), ("<u4", 4294967295)])
+def test_images_keep_the_full_scale_of_their_swath(ground, command, made, kind, largest):
+    """Images of 16 bit integers with a sign, and of 32 bit ones, hold other types. Their levels are the swath's."""
+    amplitudes = numpy.random.default_rng(9).rayleigh(0.1, (ROWS, COLUMNS)).clip(0.01, 1)
+    numpy.save(ground / "swath.npy", (amplitudes * largest).astype(kind))
+    settings = ("swaths=[{path: swath.npy}]", "splits={all: 1}", "empty=0", "images=1")
+    (record,) = records(made(f"whole_numbers{kind[1:]}", *settings))
+    grey = "grey=[-60 dB, 0 dB]"
+    expected = picture_of(made(f"grey_numbers{kind[1:]}", *settings, grey), record)
+    image = ground / f"whole_numbers{kind[1:]}" / of_image(record, "images", ".tif")
+    assert command("convert", image, "grey.png", "--db", "-60:0").returncode == 0
+    assert numpy.array_equal(read_png(ground / "grey.png"), expected)
+    (ground / "grey.png").unlink()
+
+
 def test_shards_and_merge_are_one_run(command, whole, ground):
     for shard in ("2/2", "1/2"):
         answer = command("merge", "shards")

@@ -216,6 +216,19 @@ def test_the_full_scale_stays(sonject, tmp_path, sides, output):
     assert b"full_scale" not in (tmp_path / "grey.tif").read_bytes()
 
 
+def test_runs_note_the_curve_of_grey_levels_in_db(sonject, scene, tmp_path):
+    sonject.done("convert", "swath.tif", "grey.png", "--db=-61:-10")
+    note = "grey.png says that its numbers are grey levels from -61 to -10 dB: set input.transfer to "
+    curve = "{kind: decibel, parameter: 0.2, offset: -61 dB}"
+    for verb in (["check"], ["run", "-o", "out", "--overwrite"]):
+        told = []
+        for transfer in ("{kind: amplitude}", curve):
+            done = sonject.done(*verb, scene, "--set", "input.path=grey.png", "--set",
+                                f"input.transfer={transfer}")
+            told.append(done.stdout + done.stderr)
+        assert told[0].count(note + curve) == 1 and note not in told[1]
+
+
 def test_ground_range_and_back(sonject, tmp_path, line, sides):
     sonject.done("convert", "line.xtf", "g.tif", "--channel", "port", "--range-axis", "ground")
     told = (tmp_path / "g.tif").read_bytes()

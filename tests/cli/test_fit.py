@@ -65,6 +65,9 @@ def test_a_fit_comes_nearer_to_its_contacts(sonject, folder):
      "seabed_1.tif: "),
     ("image,row,column,rows,columns\n" + "seabed_1.tif,5,5,9,20\n" * 10, "fitted.yaml",
      "contacts.csv: has 1 contacts; a fit needs 10 or more"),
+    # an image of two names
+    ("image,row,column,rows,columns\n" + "".join(f"{name},{9 * row},5,9,20\n" for row in range(9) for name in (
+        "seabed_1.tif", "./seabed_1.tif")), "fitted.yaml", "contacts.csv: has 9 contacts; a fit needs 10 or more"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "start.yaml",
      "start.yaml: is the campaign that is fitted; choose another name"),
     ("image,row,column,rows,columns\nseabed_1.tif,5,5,9,20\n", "../{here}/start.yaml",

@@ -119,6 +119,17 @@ def test_a_mask_across_all_rows_ends_where_it_ends(sonject, scene, tmp_path):
     assert numpy.array_equal(decoded(annotation["segmentation"]), labels)
 
 
+def test_a_shadow_whose_highlight_lies_outside_is_truncated(sonject, scene, tmp_path):
+    """The ball's middle lies in the patch, its near side in front of the patch's first column."""
+    ball = {"shape": "sphere", "diameter": 0.6, "position": {"row": 60, "column": 13}}
+    sonject.done("run", scene, "-o", "out", "--set", "patch={row: 4, column: 8, rows: 80, columns: 112}", "--set",
+                 f"objects={json.dumps([ball])}")
+    (thing,) = read_json(tmp_path / "out" / "truth.json")["objects"]
+    assert thing["highlight"] is None and thing["shadow"]["column"] > 8 and not thing["shadow_cut"]
+    (annotation,) = read_json(tmp_path / "out" / "coco.json")["annotations"]
+    assert annotation["truncated"]
+
+
 def test_labels_are_colours_that_read_as_numbers(sonject, folder, tmp_path):
     content = (folder / "labels.png").read_bytes()
     palette = content[content.index(b"PLTE") + 4 :][: 3 * 256]
