@@ -47,6 +47,17 @@ def test_layers_have_their_types(patch, make_scene):
         assert layer is getattr(result, name), name
 
 
+def test_empty_rows_stay_and_move_no_levels(patch, make_scene):
+    beside = patch.copy()
+    beside[: ROWS // 2 - 4] = 0
+    scene = make_scene(injection={"noise_floor": "-20 dB"})
+    whole, part = sonject.inject(patch, scene), sonject.inject(beside, scene)
+    seen = (part.highlight | part.shadow) > 0
+    assert seen.any() and not part.image[beside == 0].any() and not seen[: ROWS // 2 - 4].any()
+    levels = [10 * numpy.log10((numpy.abs(result.image[part.shadow > 0]) ** 2).mean()) for result in (whole, part)]
+    assert levels[0] == pytest.approx(levels[1], abs=0.4)
+
+
 def test_the_sphere_shows_and_the_rest_keeps_its_bits(patch, make_scene):
     before = patch.copy()
     result = sonject.inject(patch, make_scene())
