@@ -1,10 +1,12 @@
 """Tests of injection into arrays."""
 
+import copy
 import ctypes
 import gc
 import math
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -45,6 +47,13 @@ def test_layers_have_their_types(patch, make_scene):
         assert layer.shape == result.shape == (ROWS, COLUMNS), name
         assert layer.dtype == kind, name
         assert layer is getattr(result, name), name
+
+
+@pytest.mark.parametrize("duplicate", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_a_result_that_is_pickled_says_what_to_take(patch, make_scene, duplicate):
+    result = sonject.inject(patch, make_scene())
+    with pytest.raises(TypeError, match="cannot be pickled or copied: take its arrays, such as result.image"):
+        duplicate(result)
 
 
 def test_empty_rows_stay_and_move_no_levels(patch, make_scene):
