@@ -321,7 +321,9 @@ swaths: [{path: line.xtf}]
 targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 """)
     sonject.done("campaign", "campaign.yaml", "-o", "data")
-    for path in (tmp_path / "data" / "all" / "records").iterdir():
+    records = list((tmp_path / "data" / "all" / "records").iterdir())
+    assert len(records) == 12
+    for path in records:
         place = json.loads(path.read_text())["swath"]
         assert 0.15 * (place["column"] + 0.5) > altitudes[place["row"] + 15]
 
