@@ -304,9 +304,24 @@ static int write_files(struct interview *interview, const char *calibration, con
     return finish_output();
 }
 
+/* Scenes are UTF-8 text, and so are the names of files in them. */
+static bool can_be_named(const char *name)
+{
+    json_t *text = name ? json_string(name) : NULL;
+    const bool is_text = !name || text;
+    json_decref(text);
+    if (!is_text)
+        message("init: the file name '", name, "' is not UTF-8 text: rename the file");
+    return is_text;
+}
+
 static int hold(struct interview *interview)
 {
     char *text = NULL, *other = NULL;
+    const struct init_options *options = interview->options;
+    if (!can_be_named(options->image) || !can_be_named(options->target) ||
+        !can_be_named(options->output))
+        return EXIT_CODE_INPUT;
     if (!channel_check("init", interview->options->channel) || !name_files(interview))
         return EXIT_CODE_USAGE;
     if (!are_free(interview))

@@ -60,7 +60,7 @@ const char *answer_about(const struct interview *interview, const char *key)
 }
 
 /* Writes key=name. The name is in quotes (JSON), since it may have characters that mean something
- * to YAML. One that is not UTF-8 stays as it is, and whoever reads it says so. */
+ * to YAML. An array's that is not UTF-8 stays as it is, and whoever reads it says so. */
 static void write_name(char override[2 * NAME], const char *key, const char *name)
 {
     json_t *value = json_string(name);

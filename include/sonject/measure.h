@@ -94,12 +94,14 @@ SONJECT_API sonject_status sonject_measure(sonject_context *context,
  * range. A face that is no brighter than the shadow is not seen. The upper side of a round target,
  * where sound grazes it, counts as shadow.
  *
- * Errors are standard errors by speckle alone. They leave out that a highlight fades towards its
- * ends and that a shadow's rows differ in length. They also leave out what is lit below a raised
- * target, of which up to 2 pixels count as shadow. For slabs in random poses that stand in the
- * seabed, whose geometry is known, shadows are off by 1.1 errors (rms) and highlights by 1.0. For
- * thick targets, whose tops end in between, shadows are off by up to twice as many
- * (tests/physics/test_contact_measures.c). */
+ * Errors are standard errors by speckle alone. They leave out that a shadow's rows differ in
+ * length, and what is lit below a raised target, of which up to 2 pixels count as shadow. That of a
+ * highlight along the track is at least the change of this length if the 6 dB become 4.5 or 7.5 dB.
+ * This is much where a highlight fades towards its ends, or has lumps there. For slabs in random
+ * poses that stand in the seabed, whose geometry is known, shadows are off by 1.2 errors (rms) and
+ * highlights by 0.8. For thick targets, whose tops end in between, shadows are off by up to twice
+ * as many (tests/physics/test_contact_measures.c). Highlights of rough targets are off by 0.8 to
+ * 1.2 errors, and by up to 3 where few, bright lumps of fouling show. */
 typedef struct sonject_contact_measures {
     uint32_t struct_size;
     uint32_t is_cut; /* 1: highlight or shadow reaches the edge of the image or of the box, and

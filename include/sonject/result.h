@@ -177,7 +177,7 @@ typedef struct sonject_statistics {
     double noise_floor_db;   /* noise floor that was used, over the local mean seabed energy */
     uint64_t input_clipped;  /* stored pixels of the patch at full scale */
     uint64_t output_clipped; /* changed pixels that were cut at full scale when stored */
-    uint64_t changed_pixels;
+    uint64_t changed_pixels; /* pixels of the layer influence; rounding may keep some numbers */
     /* Output against input where nothing of the objects is in view, as in the paper's Figure 5; NaN
      * except in resynthesise mode. */
     double level_change_db;

@@ -108,7 +108,7 @@ sonject_status find_input(struct report *report, const struct scene *scene,
                               "sonject_calibrate and name it");
     if (pixels) {
         CHECK(take_pixels(report, pixels, swath));
-        return swath->stored ? swath_find_empty(report, scene, swath) : SONJECT_OK;
+        return swath_find_empty(report, scene, swath);
     }
     if (scene->input_kind == SONJECT_INPUT_FILE)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,

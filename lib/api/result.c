@@ -13,7 +13,6 @@ static sonject_status store_image(struct report *report, const struct swath *swa
                                   sonject_result *made)
 {
     sonject_statistics *statistics = &made->result.statistics;
-    swath_leave_empty(swath, &made->result);
     statistics->input_clipped = swath->clipped;
     made->stored_type = swath->layout.type;
     made->stored = swath_stored_result(swath, &made->result, &statistics->output_clipped);
@@ -43,6 +42,8 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
         const struct injection_input input = swath_input(&swath);
         made->report = report;
         status = injection_run(report, device, scene, &input, progress, user, &made->result);
+        if (status == SONJECT_OK)
+            swath_leave_empty(&swath, &made->result);
         if (swath.stored)
             THEN(status, store_image(report, &swath, made));
     }

@@ -187,6 +187,24 @@ static sonject_status check_earlier(struct report *report, const struct run_requ
                          : report_out_of_memory(report, "a run's inputs");
 }
 
+/* Looks again whether the folder holds the result, after a failure: another process, which ran the
+ * same, may have ended meanwhile and removed the checkpoints that both shared. */
+static sonject_status check_again(struct report *report, const struct run_request *request,
+                                  const struct swath *swath, struct run_facts *facts,
+                                  char hash[HASH_TEXT_CAPACITY], sonject_status failure,
+                                  bool *is_finished)
+{
+    struct report unused = {.host = NULL};
+    json_decref(facts->inputs);
+    facts->inputs = NULL;
+    if (check_earlier(&unused, request, swath, facts, hash, is_finished) != SONJECT_OK ||
+        !*is_finished)
+        return failure;
+    checkpoints_remove(request->folder);
+    report->message[0] = '\0';
+    return SONJECT_OK;
+}
+
 sonject_status run_scene(struct report *report, struct device_slot *slot,
                          const struct run_request *request, int *was_finished)
 {
@@ -213,6 +231,8 @@ sonject_status run_scene(struct report *report, struct device_slot *slot,
     if (status == SONJECT_OK && !is_finished) {
         facts.read_s = clock_seconds() - start;
         status = run_swath(report, slot, request, &swath, &facts, start);
+        if (status == SONJECT_ERROR_STORAGE || status == SONJECT_ERROR_INPUT)
+            status = check_again(report, request, &swath, &facts, hash, status, &is_finished);
     }
     if (was_finished)
         *was_finished = is_finished;

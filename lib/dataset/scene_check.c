@@ -238,10 +238,12 @@ sonject_status describe_scene(struct report *report, const struct scene *scene, 
         char *characters = growing_text_end(&text);
         if (!characters)
             THEN(status, report_out_of_memory(report, "the description"));
-        if (status == SONJECT_OK)
+        if (status == SONJECT_OK) {
+            text_use_points(characters);
             *out = characters;
-        else
+        } else {
             free(characters);
+        }
     }
     injection_setup_clear(&setup);
     swath_close(&swath);

@@ -38,6 +38,17 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
                                 const struct scene *scene, const struct patch_view *view,
                                 const float *pixels, bool is_complex);
 
+/* Returns the length of a span widened by a reach on both sides, within 0...all. */
+size_t widened_span(size_t first, size_t count, size_t reach, size_t all, size_t *start);
+
+/* Marks the holes in a window: rectangles of zeros with sides of at least side_m. Dark seabed and
+ * shadows in coarse grey levels have zeros, too, but fewer together. What is around the window
+ * counts, so that all windows see the same holes. view, pixels: the patch's. *holes gets memory for
+ * free(), or NULL if there are none. Errors: MEMORY. */
+sonject_status find_holes(struct report *report, const struct patch_view *view,
+                          const struct window *at, double side_m, const float *pixels,
+                          bool is_complex, uint8_t **holes);
+
 /* Returns the intensities of a window of the patch, for free(); NULL where memory is out. */
 float *window_intensities(const struct window *at, const struct patch_view *view,
                           const float *pixels, bool is_complex);

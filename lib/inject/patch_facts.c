@@ -156,3 +156,71 @@ sonject_status patch_facts_init(struct patch_facts *facts, struct report *report
     facts->noise_ratio = NOISE_UNKNOWN;
     return estimate_noise(facts, report, view, pixels, is_complex);
 }
+
+/* Keeps of a line's ones those that end a run of so many. */
+static void erode(uint8_t *line, size_t count, size_t step, size_t length)
+{
+    size_t run = 0;
+    for (size_t i = 0; i < count; i++) {
+        run = line[i * step] ? run + 1 : 0;
+        line[i * step] = run >= length;
+    }
+}
+
+/* Makes each of a line's ones the end of a run of so many. */
+static void dilate(uint8_t *line, size_t count, size_t step, size_t length)
+{
+    size_t left = 0;
+    for (size_t i = count; i-- > 0;) {
+        left = line[i * step] ? length : left - (left > 0);
+        line[i * step] = left > 0;
+    }
+}
+
+static bool is_zero(const float *pixels, size_t pixel, bool is_complex)
+{
+    return is_complex ? pixels[2 * pixel] == 0.0f && pixels[2 * pixel + 1] == 0.0f
+                      : pixels[pixel] == 0.0f;
+}
+
+size_t widened_span(size_t first, size_t count, size_t reach, size_t all, size_t *start)
+{
+    const size_t end = first + count + reach;
+    *start = first > reach ? first - reach : 0;
+    return (end < all ? end : all) - *start;
+}
+
+sonject_status find_holes(struct report *report, const struct patch_view *view,
+                          const struct window *at, double side_m, const float *pixels,
+                          bool is_complex, uint8_t **holes)
+{
+    const size_t rows = (size_t)fmin(ceil(side_m / view->row_spacing_m), 1e9);
+    const size_t columns = (size_t)fmin(ceil(side_m / view->column_spacing_m), 1e9);
+    struct window wide;
+    wide.rows = widened_span(at->first_row, at->rows, rows, view->rows, &wide.first_row);
+    wide.columns =
+        widened_span(at->first_column, at->columns, columns, view->columns, &wide.first_column);
+    uint8_t *zeros = allocate_array(wide.rows, wide.columns);
+    CHECK_MEMORY(report, zeros, "the patch");
+    for (size_t row = 0; row < wide.rows; row++) {
+        const size_t first = (wide.first_row + row) * view->columns + wide.first_column;
+        for (size_t i = 0; i < wide.columns; i++)
+            zeros[row * wide.columns + i] = is_zero(pixels, first + i, is_complex);
+        erode(zeros + row * wide.columns, wide.columns, 1, columns);
+    }
+    const bool has_runs = memchr(zeros, 1, wide.rows * wide.columns) != NULL;
+    for (size_t column = 0; has_runs && column < wide.columns; column++) {
+        erode(zeros + column, wide.rows, wide.columns, rows);
+        dilate(zeros + column, wide.rows, wide.columns, rows);
+    }
+    for (size_t row = 0; has_runs && row < at->rows; row++) {
+        uint8_t *line = zeros + (at->first_row - wide.first_row + row) * wide.columns;
+        dilate(line, wide.columns, 1, columns);
+        memmove(zeros + row * at->columns, line + at->first_column - wide.first_column,
+                at->columns);
+    }
+    *holes = has_runs && memchr(zeros, 1, at->rows * at->columns) ? zeros : NULL;
+    if (!*holes)
+        free(zeros);
+    return SONJECT_OK;
+}

@@ -13,6 +13,7 @@
 #define DOUBTFUL    16.0f  /* over the level; one look of even seabed exceeds it once in e^16 */
 #define BRIGHTEST   32.0f  /* over the seabed's level: brighter pixels are echoes */
 #define ROOT_LEVEL  0.675f /* of one look, the mean fourth root's fourth power over the mean */
+#define HOLE_RADII  4.0    /* radii of the level in a hole's least side; shadows are narrower */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double processor_range_m)
@@ -52,19 +53,21 @@ float *window_intensities(const struct window *at, const struct patch_view *view
 }
 
 /* A region of the patch whose level is sought. Its first columns may be in the water column, and
- * those that the patch's image leaves blank at its sides are no seabed either. */
+ * those that the patch's image leaves blank at its sides, and its holes, are no seabed either. */
 struct level_region {
     const struct scene *scene;
     const struct patch_view *view; /* the patch's */
     struct window at;
     size_t water_columns;
     const struct patch_facts *facts; /* the patch's */
+    const uint8_t *holes;            /* 1 in holes; NULL: none */
 };
 
 static bool is_blank(const struct level_region *region, size_t i)
 {
     const size_t column = region->at.first_column + i % region->at.columns;
-    return column < region->facts->first_heard || column >= region->facts->end_heard;
+    return column < region->facts->first_heard || column >= region->facts->end_heard ||
+           (region->holes && region->holes[i]);
 }
 
 static bool is_water(const struct level_region *region, size_t i)
@@ -173,7 +176,8 @@ static sonject_status find_level(struct report *report, const struct level_regio
                                  const float *intensity, float *level)
 {
     const size_t count = region->at.rows * region->at.columns;
-    const bool has_blanks = count > 0 && (is_blank(region, 0) || is_blank(region, count - 1));
+    const bool has_blanks =
+        region->holes || (count > 0 && (is_blank(region, 0) || is_blank(region, count - 1)));
     CHECK(region->water_columns > 0 || has_blanks
               ? level_of_seabed(report, region, intensity, level)
               : smooth(report, region, intensity, region->scene->seabed.level_radius_m, level));
@@ -200,14 +204,6 @@ static sonject_status find_map(struct report *report, const struct level_region 
     return SONJECT_OK;
 }
 
-/* Returns the length of a window widened by a reach on both sides, within 0...all. */
-static size_t widened(size_t first, size_t count, size_t reach, size_t all, size_t *start)
-{
-    const size_t end = first + count + reach;
-    *start = first > reach ? first - reach : 0;
-    return (end < all ? end : all) - *start;
-}
-
 /* Returns the region that tells the level in the window, with seabed behind the water column. */
 static struct level_region region_about(const struct scene *scene, const struct patch_view *view,
                                         const struct window *window,
@@ -220,11 +216,11 @@ static struct level_region region_about(const struct scene *scene, const struct 
     const size_t reach = local_mean_reach(radius / view->column_spacing_m);
     const size_t water = view_water_columns(view);
     struct level_region region = {.scene = scene, .view = view, .facts = facts};
-    region.at.rows =
-        widened(window->first_row, window->rows, local_mean_reach(radius / view->row_spacing_m),
-                view->rows, &region.at.first_row);
-    region.at.columns = widened(window->first_column, window->columns, reach, view->columns,
-                                &region.at.first_column);
+    region.at.rows = widened_span(window->first_row, window->rows,
+                                  local_mean_reach(radius / view->row_spacing_m), view->rows,
+                                  &region.at.first_row);
+    region.at.columns = widened_span(window->first_column, window->columns, reach, view->columns,
+                                     &region.at.first_column);
     if (water > region.at.first_column) {
         const size_t end = water + reach < view->columns ? water + reach : view->columns;
         region.water_columns = water - region.at.first_column;
@@ -264,17 +260,22 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
 {
     const struct window window = {tracer->view.first_row, tracer->view.rows,
                                   tracer->view.first_column, tracer->view.columns};
-    const struct level_region region = region_about(tracer->scene, view, &window, facts);
+    struct level_region region = region_about(tracer->scene, view, &window, facts);
     struct report *report = tracer->report;
     const size_t wide = region.at.rows * region.at.columns;
     const size_t count = window.rows * window.columns;
     memset(level, 0, sizeof *level);
     float *intensity = window_intensities(&region.at, view, pixels, is_complex);
     float *planes = allocate_array(wide, 2 * sizeof *planes);
+    uint8_t *holes = NULL;
     level->intensity = allocate_array(3 * count + window.columns, sizeof(float));
     sonject_status status = intensity && planes && level->intensity
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the patch");
+    THEN(status,
+         find_holes(report, view, &region.at, HOLE_RADII * tracer->scene->seabed.level_radius_m,
+                    pixels, is_complex, &holes));
+    region.holes = holes;
     THEN(status, find_level(report, &region, intensity, planes));
     THEN(status, find_map(report, &region, intensity, planes, planes + wide));
     if (status == SONJECT_OK) {
@@ -294,6 +295,7 @@ sonject_status patch_level_init(struct patch_level *level, const struct tracer *
     }
     free(intensity);
     free(planes);
+    free(holes);
     return status;
 }
 

@@ -226,6 +226,7 @@ static sonject_status find_empty_rows(struct report *report, struct swath_file *
                                       const void *whole, struct swath *swath)
 {
     const size_t patch_bytes = (size_t)swath->patch.columns * stored_bytes(swath);
+    const void *patch = swath->stored ? swath->stored : swath->pixels;
     const size_t row_bytes = (size_t)swath->layout.columns * stored_bytes(swath);
     unsigned char *line = allocate_array(row_bytes, 1);
     sonject_status status = SONJECT_OK;
@@ -235,7 +236,7 @@ static sonject_status find_empty_rows(struct report *report, struct swath_file *
     for (size_t i = 0; status == SONJECT_OK && i < swath->patch.rows; i++) {
         const struct region row = {swath->patch.first_row + i, 0, 1, swath->layout.columns};
         const unsigned char *bytes = line;
-        if (!is_zero((unsigned char *)swath->stored + i * patch_bytes, patch_bytes))
+        if (!is_zero((const unsigned char *)patch + i * patch_bytes, patch_bytes))
             continue;
         if (whole)
             bytes = (const unsigned char *)whole + (size_t)row.first_row * row_bytes;
@@ -314,10 +315,25 @@ sonject_status swath_linearise(struct report *report, const char *path, struct s
     return SONJECT_OK;
 }
 
+/* Copies the pixels that the caller lent. */
+static sonject_status own_pixels(struct report *report, struct swath *swath)
+{
+    const size_t count =
+        (size_t)swath->patch.rows * (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
+    float *pixels = allocate_array(count, sizeof *pixels);
+    CHECK_MEMORY(report, pixels, "the patch");
+    memcpy(pixels, swath->pixels, count * sizeof *pixels);
+    swath->pixels = pixels;
+    swath->borrows_pixels = false;
+    return SONJECT_OK;
+}
+
 sonject_status swath_find_empty(struct report *report, const struct scene *scene,
                                 struct swath *swath)
 {
-    CHECK(find_empty_rows(report, NULL, swath->stored, swath));
+    CHECK(find_empty_rows(report, NULL, swath->stored ? swath->stored : swath->pixels, swath));
+    if (swath->empty.count > 0 && swath->borrows_pixels)
+        CHECK(own_pixels(report, swath));
     return fill_empty_rows(report, scene, swath);
 }
 

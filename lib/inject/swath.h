@@ -65,7 +65,8 @@ sonject_status swath_open_stored(struct report *report, const struct scene *scen
 void swath_store_close(struct swath_store *store);
 
 /* Linearise pixels in memory, and find their empty rows, as for a file. rows, columns, transfer,
- * stored and is_whole must be set. path: for messages; NULL: no file. Errors: INPUT, MEMORY. */
+ * stored (or pixels, to find empty rows) and is_whole must be set. path: for messages; NULL: no
+ * file. Errors: INPUT, MEMORY. */
 sonject_status swath_linearise(struct report *report, const char *path, struct swath *swath);
 sonject_status swath_find_empty(struct report *report, const struct scene *scene,
                                 struct swath *swath);

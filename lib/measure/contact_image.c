@@ -322,19 +322,39 @@ static void keep_marks(struct contact_image *image, const sonject_box *box)
         }
 }
 
+/* Marks the highlight. The caller frees search->stack. */
+static sonject_status find_highlight(struct contact_image *image, struct report *report,
+                                     const struct contact_place *place, double least,
+                                     struct area_search *search, struct contact_area *highlight)
+{
+    const struct area_search bright = {image->means,  image->intensity, image->columns,
+                                       place->bright, image->columns,   PART_HIGHLIGHT,
+                                       0.0,           image->marks,     NULL};
+    *search = bright;
+    search->stack = allocate_array(place->box.rows, place->box.columns * sizeof *search->stack);
+    CHECK_MEMORY(report, search->stack, "a contact's measures");
+    begin_marks(image, &place->box);
+    search->threshold = fmax(least, HIGHLIGHT_UNDER_PEAK * brightest_mean(image, &place->bright));
+    *highlight = mark_highlight(image, search);
+    return SONJECT_OK;
+}
+
+sonject_status find_contact_highlight(struct contact_image *image, struct report *report,
+                                      const struct contact_place *place, double least,
+                                      struct contact_area *highlight)
+{
+    struct area_search search;
+    CHECK(find_highlight(image, report, place, least, &search, highlight));
+    free(search.stack);
+    return SONJECT_OK;
+}
+
 sonject_status find_contact_parts(struct contact_image *image, struct report *report,
                                   const struct contact_place *place, double seabed,
                                   struct contact_area *highlight, struct contact_area *shadow)
 {
-    struct area_search search = {image->means,  image->intensity, image->columns,
-                                 place->bright, image->columns,   PART_HIGHLIGHT,
-                                 0.0,           image->marks,     NULL};
-    search.stack = allocate_array(place->box.rows, place->box.columns * sizeof *search.stack);
-    CHECK_MEMORY(report, search.stack, "a contact's measures");
-    begin_marks(image, &place->box);
-    search.threshold = fmax(HIGHLIGHT_OVER_SEABED * seabed,
-                            HIGHLIGHT_UNDER_PEAK * brightest_mean(image, &place->bright));
-    *highlight = mark_highlight(image, &search);
+    struct area_search search;
+    CHECK(find_highlight(image, report, place, HIGHLIGHT_OVER_SEABED * seabed, &search, highlight));
     search.box = place->box;
     search.part = PART_SHADOW;
     search.threshold = SHADOW_UNDER_SEABED * seabed;

@@ -23,6 +23,7 @@
 
 #define LOBE_BIAS_REACH 32   /* rows */
 #define DEVIATION_LEAST 0.15 /* pixels; floor for finer point responses */
+#define DOUBT           1.41 /* ratio by which a highlight's threshold moves to tell its doubt */
 #define ROOT_OF_PI      1.7724538509055159
 #define PI              3.14159265358979323846
 #define EDGE_REACH      8 /* pixels beyond a part in which its edge may lie */
@@ -44,6 +45,7 @@
 struct contact_lines {
     const struct contact_image *image;
     double seabed; /* mean intensity */
+    double bright; /* least intensity of a highlight */
     double slant, middle_row;
     double tilt, tilt_row;
     double *means, *lobe_bias; /* room for one profile */
@@ -203,7 +205,7 @@ static sonject_box middle_rows(const sonject_box *part)
 /* Returns the levels that tell a highlight from the seabed or darker pixels. */
 static struct end_levels levels_of_highlight(const struct contact_lines *lines)
 {
-    const struct end_levels levels = {HIGHLIGHT_OVER_SEABED * lines->seabed, lines->seabed};
+    const struct end_levels levels = {lines->bright, lines->seabed};
     return levels;
 }
 
@@ -291,16 +293,45 @@ static struct contact_length width_of_highlight(const struct contact_lines *line
     return length_between(&near, &far);
 }
 
+/* Returns the length along the track, from speckle alone. Leaves the lines along the highlight. */
+static struct contact_length length_along_track(struct contact_lines *lines,
+                                                const struct contact_area *highlight,
+                                                sonject_box *along)
+{
+    lie_along(lines, highlight, along);
+    struct profile_edge first = end_along_track(lines, &highlight->box, -1);
+    const struct profile_edge last = end_along_track(lines, &highlight->box, 1);
+    first.place = -first.place;
+    return length_between(&first, &last);
+}
+
+/* Finds by how much the length changes along the track if the least intensity of a highlight is a
+ * little lower or higher. That is much where the ends fade, or are lumps. */
+static sonject_status find_doubt(struct contact_lines *lines, struct contact_image *image,
+                                 struct report *report, const struct contact_place *place,
+                                 double lengths[2])
+{
+    for (int i = 0; i < 2; i++) {
+        struct contact_area area;
+        sonject_box along;
+        lines->bright = (i == 0 ? 1.0 / DOUBT : DOUBT) * HIGHLIGHT_OVER_SEABED * lines->seabed;
+        CHECK(find_contact_highlight(image, report, place, lines->bright, &area));
+        lengths[i] = area.pixels > 0 ? length_along_track(lines, &area, &along).pixels : 0.0;
+    }
+    lines->bright = HIGHLIGHT_OVER_SEABED * lines->seabed;
+    return SONJECT_OK;
+}
+
 /* Leaves the lines along the highlight. Returns the highlight's middle column at the middle row. */
-static size_t measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes)
+static size_t measure_highlight(struct contact_lines *lines, const double doubted[2],
+                                struct contact_sizes *sizes)
 {
     sonject_box along;
-    lie_along(lines, &sizes->highlight, &along);
+    struct contact_length *length = &sizes->highlight_rows;
+    *length = length_along_track(lines, &sizes->highlight, &along);
     const sonject_box middle = middle_rows(&along);
-    const struct profile_edge first = end_along_track(lines, &sizes->highlight.box, -1);
-    const struct profile_edge last = end_along_track(lines, &sizes->highlight.box, 1);
-    sizes->highlight_rows.pixels = fmax(0.0, last.place - first.place);
-    sizes->highlight_rows.error = hypot(first.error, last.error);
+    for (int i = 0; i < 2; i++)
+        length->error = fmax(length->error, fabs(doubted[i] - length->pixels));
     sizes->highlight_columns = width_of_highlight(lines, &middle);
     sizes->highlight_intensity = sizes->highlight.energy / (double)sizes->highlight.pixels;
     return along.first_column + along.columns / 2;
@@ -494,17 +525,19 @@ sonject_status measure_contact_sizes(struct contact_image *image, struct report 
                               "the image is dark around row %zu, column %zu: there is no seabed to "
                               "measure a contact against",
                               place->box.first_row, place->box.first_column);
-    CHECK(
-        find_contact_parts(image, report, place, sizes->seabed, &sizes->highlight, &sizes->shadow));
     lines.image = image;
     lines.seabed = sizes->seabed;
     lines.means = allocate_array(most, 2 * sizeof *lines.means);
     CHECK_MEMORY(report, lines.means, "a contact's measures");
     lines.lobe_bias = lines.means + most;
-    if (sizes->highlight.pixels > 0)
-        bright_column = measure_highlight(&lines, sizes);
-    if (sizes->shadow.pixels > 0)
+    double doubted[2];
+    sonject_status status = find_doubt(&lines, image, report, place, doubted);
+    THEN(status, find_contact_parts(image, report, place, sizes->seabed, &sizes->highlight,
+                                    &sizes->shadow));
+    if (status == SONJECT_OK && sizes->highlight.pixels > 0)
+        bright_column = measure_highlight(&lines, doubted, sizes);
+    if (status == SONJECT_OK && sizes->shadow.pixels > 0)
         measure_shadow(&lines, sizes->highlight.pixels > 0 ? &bright_column : NULL, sizes);
     free(lines.means);
-    return SONJECT_OK;
+    return status;
 }

@@ -81,8 +81,14 @@ sonject_status find_contact_parts(struct contact_image *image, struct report *re
                                   const struct contact_place *place, double seabed,
                                   struct contact_area *highlight, struct contact_area *shadow);
 
+/* Marks the highlight alone, brighter than some least mean. Its marks do not count as taken.
+ * Errors: MEMORY. */
+sonject_status find_contact_highlight(struct contact_image *image, struct report *report,
+                                      const struct contact_place *place, double least,
+                                      struct contact_area *highlight);
+
 struct contact_length {
-    double pixels, error; /* error: standard error from speckle alone. NaN: no such part */
+    double pixels, error; /* error: standard error. NaN: no such part */
 };
 
 struct contact_sizes {

@@ -74,6 +74,19 @@ static double shown(const struct field *field, double number)
                                                                               : number;
 }
 
+/* Returns a limit in the unit that users read, with the 6 digits that are told. An angle is rounded
+ * so that it is within the limit itself. inwards: 1 or -1. */
+static double shown_limit(const struct field *field, double limit, double inwards)
+{
+    const double number = shown(field, limit);
+    if (number == limit || number == 0.0 || isinf(number))
+        return number;
+    const double digit = pow(10.0, floor(log10(fabs(number))) - 5.0);
+    const double nearest = round(number / digit) * digit;
+    const bool is_beyond = inwards * nearest * PI / 180.0 < inwards * limit;
+    return is_beyond ? nearest + inwards * digit : nearest;
+}
+
 static const char *unit_behind(const struct field *field)
 {
     return field->per                      ? field->per
@@ -153,7 +166,8 @@ static void tell_range(const struct field *field, char text[200])
     const char *least_is = field->bounds & ABOVE_LEAST ? "above " : "at least ";
     const char *most_is = field->bounds & BELOW_MOST ? "below " : "at most ";
     const char *unit = unit_behind(field);
-    const double least = shown(field, field->least), most = shown(field, field->most);
+    const double least = shown_limit(field, field->least, 1.0);
+    const double most = shown_limit(field, field->most, -1.0);
     const int digits = is_count(field) ? 15 : 6;
     if (field->range)
         snprintf(text, 200, "%s", field->range);
@@ -167,7 +181,8 @@ static void tell_range(const struct field *field, char text[200])
         snprintf(text, 200, "%s%.*g%s and %s%.*g%s", least_is, digits, least, unit, most_is, digits,
                  most, unit);
     else
-        snprintf(text, 200, "%.*g...%.*g%s", digits, least, digits, most, unit);
+        snprintf(text, 200, "%.*g...%.*g%s%s", digits, least, digits, most, unit,
+                 field->bounds & ZERO_IS_NONE && least > 0.0 ? ", or 0 for the default" : "");
     for (size_t i = 0; *text && field->kind == FIELD_QUANTITY && field->words[i]; i++)
         snprintf(text + strlen(text), 200 - strlen(text), "%s%s",
                  field->words[i + 1] ? ", " : " or ", field->words[i]);
@@ -261,7 +276,8 @@ static bool is_of_choice(const struct section *section, const char *key)
 static void tell_preset(const struct section *section, const struct field *field, char text[64])
 {
     const double preset = shown(field, field->preset);
-    const bool is_none = field->is_required || is_of_choice(section, field->key) || isnan(preset) ||
+    const bool is_none = field->is_required || field->hides_preset ||
+                         is_of_choice(section, field->key) || isnan(preset) ||
                          (preset == 0.0 && !field->words[0] && !is_within(field, 0.0)) ||
                          (preset == 0.0 && (field->bounds & ZERO_IS_NONE));
     text[0] = 0;

@@ -57,6 +57,7 @@ struct field {
     enum quantity quantity;
     size_t offset;
     double preset;      /* the value without the key; for a word, its number */
+    bool hides_preset;  /* no default is told, since the section asks for the key */
     double least, most; /* both 0: any finite number, or any count that the type holds */
     uint32_t bounds;    /* enum bounds */
     const char *range;  /* text after "must be" where the bounds alone say too little */

@@ -186,10 +186,12 @@ static const struct field glossy_fields[] = {
 static const struct section glossy_section = {ROWS(glossy_fields)};
 
 static const struct field fluid_fields[] = {
-    {"density", "density, as a ratio to the water's", QUANTITY(density_ratio, NUMBER),
-     WITHIN(0.001, 100.0), .per = " times the water's", .preset = 1.0},
-    {"speed", "sound speed, as a ratio to the water's", QUANTITY(speed_ratio, NUMBER),
-     WITHIN(0.01, 20.0), .per = " times the water's", .preset = 1.0},
+    {"density", "density, as a ratio to the water's; needed unless the material is a fluid by name",
+     QUANTITY(density_ratio, NUMBER), WITHIN(0.001, 100.0), .per = " times the water's",
+     .preset = 1.0, .hides_preset = true},
+    {"speed", "sound speed, as a ratio to the water's; needed as density is",
+     QUANTITY(speed_ratio, NUMBER), WITHIN(0.01, 20.0), .per = " times the water's", .preset = 1.0,
+     .hides_preset = true},
     {"loss", "loss in the material: imaginary part of the wavenumber over its real part",
      QUANTITY(loss, NUMBER), WITHIN(0.0, 1.0)},
 };
@@ -256,7 +258,7 @@ static void relate_surface(struct check *check, const void *structure)
 #define STRUCTURE sonject_surface_params
 static const struct field surface_fields[] = {
     {"material", "material of the surface", HIDDEN, PART(material, material_section)},
-    {"depth", "water depth: height of the sea surface over the mean seabed",
+    {"depth", "water depth: height of the sea surface over the mean seabed; 0: no surface",
      QUANTITY(water_depth_m, LENGTH), FROM_ZERO, REQUIRED},
     {"reflection", "amplitude of the sea surface's specular part, -1 to 1",
      QUANTITY(material.reflection, NUMBER), WITHIN(-1.0, 1.0), .preset = -1.0},

@@ -9,6 +9,7 @@
 #include "base/text.h"
 
 #define DIGITS 9
+#define OTHERS 200 /* bytes */
 
 /* The numbers, in the order of the notes. */
 static const struct {
@@ -168,23 +169,33 @@ static bool is_another(double files, double given)
     return fabs(given - files) > 0.05 * fabs(files);
 }
 
+static void add_other(char text[OTHERS], const char *before, double files, const char *behind,
+                      double given)
+{
+    const size_t length = strlen(text);
+    snprintf(text + length, OTHERS - length, "%s%s %.4g m%s, not %.4g", length > 0 ? ", " : "",
+             before, files, behind, given);
+}
+
 void tell_other_geometry(struct report *report, const char *path,
                          const sonject_geometry_params *files, const sonject_geometry_params *given)
 {
-    const bool are_alike = files->nadir_column == given->nadir_column;
+    const double columns = fabs(files->column_spacing_m), told = fabs(given->column_spacing_m);
+    char others[OTHERS] = "";
+    if (is_another(files->row_spacing_m, given->row_spacing_m))
+        add_other(others, "rows of", files->row_spacing_m, "", given->row_spacing_m);
+    if (is_another(columns, told))
+        add_other(others, "columns of", columns, "", told);
     /* a first range is as good as known within a metre */
-    const bool is_beside = are_alike &&
-                           fabs(files->first_slant_range_m - given->first_slant_range_m) > 1.0 &&
-                           is_another(files->first_slant_range_m, given->first_slant_range_m);
-    if (is_beside || is_another(files->row_spacing_m, given->row_spacing_m) ||
-        is_another(fabs(files->column_spacing_m), fabs(given->column_spacing_m)))
+    if (files->nadir_column == given->nadir_column &&
+        fabs(files->first_slant_range_m - given->first_slant_range_m) > 1.0 &&
+        is_another(files->first_slant_range_m, given->first_slant_range_m))
+        add_other(others, "from", files->first_slant_range_m, " on", given->first_slant_range_m);
+    if (*others)
         report_note(report,
-                    "%s tells other spacings and ranges than the scene: rows of %.4g m, not %.4g, "
-                    "columns of %.4g m, not %.4g, from %.4g m on, not %.4g; input.geometry: "
+                    "%s tells other spacings and ranges than the scene: %s; input.geometry: "
                     "from_file takes the file's",
-                    path, files->row_spacing_m, given->row_spacing_m, fabs(files->column_spacing_m),
-                    fabs(given->column_spacing_m), files->first_slant_range_m,
-                    given->first_slant_range_m);
+                    path, others);
 }
 
 void tell_grey_levels(struct report *report, const char *path, const double grey_db[2],

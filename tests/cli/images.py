@@ -93,5 +93,9 @@ def read_tiff(path):
     assert tags.get(259, (1,)) == (1,), "the TIFF is compressed"
     kind = {1: "u", 3: "f"}[tags.get(339, (1,))[0]] + str(tags[258][0] // 8)
     channels = tags.get(277, (1,))[0]
+    assert channels == 1 or tags.get(284, (1,)) == (1,), "the TIFF has a plane for each channel"
+    row_bytes = tags[256][0] * channels * tags[258][0] // 8
+    rows = [min(tags[278][0], tags[257][0] - first) for first in range(0, tags[257][0], tags[278][0])]
+    assert [len(strip) for strip in strips] == [row_bytes * each for each in rows]
     pixels = numpy.frombuffer(b"".join(strips), order + kind).reshape(tags[257][0], tags[256][0], channels)
     return pixels[:, :, 0] if channels == 1 else pixels

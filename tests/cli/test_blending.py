@@ -345,14 +345,16 @@ objects: [{name: box, shape: box, length: 2 m, width: 0.5 m, height: 0.5 m, posi
     assert decibels(columns[115:170] / seabed).max() < -50
 
 
-@pytest.mark.parametrize("echo", ["a pixel", "a target", "a blank side", "a blank side and a pixel"])
+@pytest.mark.parametrize("echo", ["a pixel", "a target", "a blank side", "a blank side and a pixel", "a hole"])
 def test_echoes_in_the_image_move_no_levels(sonject, tmp_path, echo):
     """A target's levels hold beside one that the image shows already, beside a single pixel at 66 dB, and beside
-    columns in which nothing was heard."""
+    columns or rectangles in which nothing was heard."""
     plain = 0.05 * numpy.random.default_rng(1).rayleigh(numpy.sqrt(0.5), (400, 500)).astype(numpy.float32)
     beside = plain.copy()
     if "blank" in echo:
         beside[:, :235] = 0
+    if echo == "a hole":
+        beside[50:185, 50:440] = 0
     if "pixel" in echo:
         beside[260, 250] = 100
     if echo == "a target":

@@ -233,7 +233,9 @@ def test_campaigns_make_one_for_each_swath(sonject, tmp_path):
     # Going on restores the numbers of the existing images. Another campaign removes the calibrations.
     calibration = tmp_path / "whole" / "calibrations" / "0.yaml"
     calibration.write_text(calibration.read_text().replace("noise_floor: -", "noise_floor: -1"))
-    for record in (tmp_path / "whole").glob("*/records/*.json"):
+    gone = list((tmp_path / "whole").glob("*/records/*.json"))
+    assert gone
+    for record in gone:
         record.unlink()
     assert sonject("campaign", "campaign.yaml", "-o", "whole").returncode == 0
     assert contents(tmp_path / "whole") == contents(tmp_path / "parts")

@@ -125,7 +125,10 @@ def contents(folder):
 
 
 def records(folder):
-    return [json.loads(path.read_text()) for path in sorted(folder.glob("*/records/*.json"))]
+    """Returns the records of a campaign's folder, which has some."""
+    found = [json.loads(path.read_text()) for path in sorted(folder.glob("*/records/*.json"))]
+    assert found
+    return found
 
 
 def of_image(record, kind, extension):
@@ -1043,6 +1046,8 @@ def test_a_random_design_draws_each_key_by_itself(made):
                float(each["seabed.lambert"].split()[0]) + 30) for each in drawn]
     assert all(abs(one - other) > 1e-4 for one, other in shares)
     assert len(set(shares)) == 8
+    # in strata, each eighth would have one value
+    assert all(len({int(8 * share) for share in of_key}) < 8 for of_key in zip(*shares))
 
 
 def test_the_example_runs_as_it_says(ground, environment):

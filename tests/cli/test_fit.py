@@ -260,7 +260,9 @@ def test_contacts_are_measured_side_by_side(sonject, tmp_path):
     middle = numpy.sqrt(numpy.prod([float(end.split()[0]) for end in length]))
     assert middle == pytest.approx(1.34, rel=0.2)  # 24 contacts give it to some 15 %; the start is 2.1
     sonject.done("campaign", "fitted.yaml", "-o", "data", "--set", "images=20", "--quiet")
-    for path in (tmp_path / "data" / "all" / "records").glob("*.json"):
+    records = list((tmp_path / "data" / "all" / "records").glob("*.json"))
+    assert len(records) == 20
+    for path in records:
         swath = json.loads(path.read_text())["swath"]
         ratio = abs(swath["column"] + 47.5 - 599.5) * 0.05 / 5
         is_port = swath["column"] < 600

@@ -106,6 +106,14 @@ def test_names_may_have_the_characters_of_yaml(sonject, image, stem):
     sonject.done("check", f"{stem}_campaign.yaml")
 
 
+@pytest.mark.parametrize("given", [("line\udcff.npy",), ("swath.npy", "--target", "line\udcff.npy"),
+                                   ("swath.npy", "-o", "line\udcff.yaml")])
+def test_names_that_are_not_utf8_are_refused_by_name(sonject, image, given):
+    (image.parent / "line\udcff.npy").write_bytes(image.read_bytes())
+    answer = init(sonject, *given, answers=ANSWERS)
+    assert answer.returncode == 3 and re.search("init: the file name 'line.*' is not UTF-8 text: rename", answer.stderr)
+
+
 def test_a_file_that_is_there_stays(sonject, image):
     image.with_suffix(".yaml").write_text("mine")
     answer = init(sonject, "swath.npy", answers=ANSWERS)

@@ -221,6 +221,7 @@ def test_commands_do_what_they_should(project, command):
 
 
 def test_every_example_scene_is_run():
+    assert SCENES and TO_TYPE and YAML and any(suggested_settings(name) for name in SCENES)
     for name in SCENES:
         assert [text for text in comment_commands(name) if name in text], name
 

@@ -321,7 +321,9 @@ swaths: [{path: line.xtf}]
 targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
 """)
     sonject.done("campaign", "campaign.yaml", "-o", "data")
-    for path in (tmp_path / "data" / "all" / "records").iterdir():
+    records = list((tmp_path / "data" / "all" / "records").iterdir())
+    assert len(records) == 12
+    for path in records:
         place = json.loads(path.read_text())["swath"]
         assert 0.15 * (place["column"] + 0.5) > altitudes[place["row"] + 15]
 
@@ -365,6 +367,7 @@ def test_empty_rows_stay_as_they_are_and_are_named(sonject, tmp_path, sides):
              for name in ("highlight", "shadow", "labels", "influence")]
     assert all(mask[29].any() and not mask[[28, 30, 31]].any() for mask in masks[-2:])
     assert not any(mask[[28, 30, 31]].any() for mask in masks)
+    assert facts["changed_pixels"] == (masks[-1] > 0).sum()
     found, labelled = truth["objects"][0], json.loads((tmp_path / "out" / "coco.json").read_text())["annotations"][0]
     assert not labelled["occluded"]
     for key, mask in zip(("highlight", "shadow"), masks):

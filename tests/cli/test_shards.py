@@ -3,6 +3,7 @@
 import json
 import random
 import shutil
+import signal
 import subprocess
 import time
 
@@ -167,6 +168,22 @@ def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environmen
     command(sonject, "merge", "result")
     assert contents(folder) == wholes[1]
     assert {path.name for path in files_below(folder)} == RESULTS
+
+
+def test_of_two_same_runs_at_once_both_end_well(scene, tmp_path, environment, sonject, wholes):
+    """Holds the slower one while the other ends, which removes the checkpoints of both."""
+    folder, arguments = tmp_path / "result", ["run", scene, "-o", "result", *MANY_RAYS]
+    process = subprocess.Popen([COMMAND, *map(str, arguments), "--checkpoint", "1e-9"], cwd=tmp_path, env=environment,
+                               stderr=subprocess.PIPE, text=True)
+    while process.poll() is None and not list(folder.glob("work/shard-*.sums")):
+        time.sleep(0.002)
+    process.send_signal(signal.SIGSTOP)
+    assert checkpoints(folder)
+    command(sonject, *arguments)
+    process.send_signal(signal.SIGCONT)
+    told = process.communicate()[1]
+    assert process.returncode == 0 and "already" in told, told
+    assert contents(folder) == wholes[1]
 
 
 def test_shards_know_their_scene_from_elsewhere(sonject, scene, tmp_path, whole):

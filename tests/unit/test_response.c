@@ -68,7 +68,7 @@ TEST(test_hostile_keys)
         {"motion: {yaw: {bias: 1 deg}}", "sonar.motion.yaw.advance: missing"},
         {"motion: {yaw: {advance: 0}}", "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0"},
         {"motion: {yaw: {advance: 1, bias: -9 deg}}",
-         "sonar.motion.yaw.bias: must be -5.72958...5.72958 deg, not -"},
+         "sonar.motion.yaw.bias: must be -5.72957...5.72957 deg, not -"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         char scene[1200];

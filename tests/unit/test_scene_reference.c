@@ -9,6 +9,7 @@
 #include "temporary_folder.h"
 
 #define PART_PREFIX "objects[].parts[]."
+#define ROUNDING    1e-14 /* of the 15 digits that the list's numbers have */
 
 static const char introduction[] =
     "# Keys of scene files\n\n"
@@ -227,6 +228,35 @@ TEST(test_the_references_are_up_to_date)
 {
     for (size_t i = 0; i < COUNT(references); i++)
         check_reference(&references[i]);
+}
+
+/* Numbers are told in SI units, angles in degrees. */
+TEST(test_limits_that_are_told_are_within_the_limits)
+{
+    struct report report = {.host = NULL};
+    size_t angles = 0, i;
+    json_t *key;
+    char *listed;
+    assert_int_equal(section_keys_json(&report, &scene_section, &listed), SONJECT_OK);
+    json_t *keys = json_loads(listed, 0, NULL);
+    json_array_foreach(keys, i, key)
+    {
+        const char *range = text_of(key, "range"), *dots = strstr(range, "...");
+        const bool is_angle = strstr(text_of(key, "unit"), "deg") != NULL;
+        const double scale = is_angle ? PI / 180.0 : 1.0;
+        if (!dots || !json_is_number(json_object_get(key, "least")))
+            continue;
+        const double least = json_number_value(json_object_get(key, "least"));
+        const double most = json_number_value(json_object_get(key, "most"));
+        char low[40];
+        snprintf(low, sizeof low, "%.*s", (int)(dots - range), range);
+        assert_true(scale * strtod(dots + 3, NULL) <= most + fabs(most) * ROUNDING);
+        assert_true(scale * strtod(low, NULL) >= least - fabs(least) * ROUNDING);
+        angles += is_angle;
+    }
+    assert_true(angles > 5);
+    json_decref(keys);
+    free(listed);
 }
 
 int main(int argc, char **argv)

@@ -70,6 +70,11 @@ class Result(Handle):
         self._object_count = object_count
         self._transfer = transfer
 
+    def __reduce__(self) -> Any:
+        raise TypeError(
+            "a Result cannot be pickled or copied: take its arrays, such as result.image and result.labels, instead"
+        )
+
     @cached_property
     def _size(self) -> tuple[int, int, PixelKind]:
         rows, columns, kind = ctypes.c_uint64(), ctypes.c_uint64(), ctypes.c_uint32()

@@ -8,7 +8,7 @@ import numpy
 import pytest
 
 import sonject
-from conftest import CAMPAIGN_SCENE
+from conftest import CAMPAIGN_SCENE, GEOMETRY
 
 @pytest.fixture
 def campaign(campaign_folder):
@@ -139,6 +139,20 @@ def test_a_data_set_is_the_same_in_a_host_with_a_decimal_comma(campaign, tmp_pat
     assert "highlight" in (tmp_path / "C" / "all" / "records" / "00000000.json").read_text().split("because")[1]
     for path in files:
         assert (tmp_path / name / path).read_bytes() == (tmp_path / "C" / path).read_bytes(), path
+
+
+def test_a_check_is_the_same_in_a_host_with_a_decimal_comma(make_scene):
+    scene, told = make_scene(input={"uniform": {"rows": 60, "columns": 90}, "geometry": GEOMETRY}), []
+    for name in ("C", "de_DE.UTF-8"):
+        try:
+            locale.setlocale(locale.LC_ALL, name)
+        except locale.Error:
+            pytest.skip("no locale with a decimal comma is installed")
+        try:
+            told.append(sonject.check(scene))
+        finally:
+            locale.setlocale(locale.LC_ALL, "C")
+    assert told[0] == told[1] and "m along-track" in told[0]
 
 
 @pytest.mark.parametrize("name", ["swath.npy", "target.yaml", "rock.obj", "pings.csv", "heights.npy"])

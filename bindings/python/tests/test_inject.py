@@ -1,10 +1,12 @@
 """Tests of injection into arrays."""
 
+import copy
 import ctypes
 import gc
 import math
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -45,6 +47,24 @@ def test_layers_have_their_types(patch, make_scene):
         assert layer.shape == result.shape == (ROWS, COLUMNS), name
         assert layer.dtype == kind, name
         assert layer is getattr(result, name), name
+
+
+@pytest.mark.parametrize("duplicate", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_a_result_that_is_pickled_says_what_to_take(patch, make_scene, duplicate):
+    result = sonject.inject(patch, make_scene())
+    with pytest.raises(TypeError, match="cannot be pickled or copied: take its arrays, such as result.image"):
+        duplicate(result)
+
+
+def test_empty_rows_stay_and_move_no_levels(patch, make_scene):
+    beside = patch.copy()
+    beside[: ROWS // 2 - 4] = 0
+    scene = make_scene(injection={"noise_floor": "-20 dB"})
+    whole, part = sonject.inject(patch, scene), sonject.inject(beside, scene)
+    seen = (part.highlight | part.shadow) > 0
+    assert seen.any() and not part.image[beside == 0].any() and not seen[: ROWS // 2 - 4].any()
+    levels = [10 * numpy.log10((numpy.abs(result.image[part.shadow > 0]) ** 2).mean()) for result in (whole, part)]
+    assert levels[0] == pytest.approx(levels[1], abs=0.4)
 
 
 def test_the_sphere_shows_and_the_rest_keeps_its_bits(patch, make_scene):
@@ -421,3 +441,27 @@ def test_a_contact_is_measured():
     assert numpy.isnan(found.shadow_range_m) and found.shadow.rows > 15
     with pytest.raises(sonject.SonjectError, match="not inside"):
         sonject.measure_contact(image, sonject.Box(100, 0, 30, 30))
+
+
+@pytest.mark.parametrize("body, level", [
+    ({"shape": "box", "length": 1.8, "width": 0.4, "height": 0.4, "heading": "20 deg"}, "10 dB"),
+    ({"shape": "truncated_cone", "diameter": 1, "top_diameter": 0.5, "height": 0.4}, "15 dB")])
+def test_errors_of_lengths_along_the_track_hold_for_rough_targets(context, body, level):
+    """Their highlights fade towards the ends, or have lumps there."""
+    errors = []
+    for seed in range(1, 41):
+        scene = sonject.Scene(
+            sonar={"frequency": 100e3, "bandwidth": 30e3, "altitude": 10},
+            input={"geometry": {"row_spacing": 0.025, "column_spacing": 0.025, "first_slant_range": 38},
+                   "synthetic": {"rows": 112, "columns": 224, "seed": seed, "speckle_shape": "inf", "ripple_contrast": 0,
+                                 "patch_contrast": 0}},
+            injection={"seed": seed}, context=context,
+            objects=[{**body, "material": {"reflection": 0}, "position": {"row": 55, "column": 60},
+                      "level": {"over_seabed": level}}])
+        result = sonject.inject(None, scene)
+        truth = result.objects[0]
+        box = sonject.Box(*(max(0, first - 6) for first in (truth.both.first_row, truth.both.first_column)),
+                          truth.both.rows + 12, truth.both.columns + 12)
+        found = sonject.measure_contact(result.image, box)
+        errors.append((found.highlight_along_pixels - truth.highlight_along_m / 0.025) / found.highlight_along_error_pixels)
+    assert 0.7 < numpy.sqrt(numpy.mean(numpy.square(errors))) < 1.4
