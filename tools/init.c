@@ -218,6 +218,10 @@ static sonject_status learn(struct interview *interview, char **text)
     interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
     interview->plain_row = placed(*text, "row");
     interview->plain_column = placed(*text, "column");
+    interview->is_complex =
+        file_tells(interview, "sonject: 1\ninput: {complex: true, geometry: {row_spacing: 1 cm, "
+                              "column_spacing: 1 cm, first_slant_range: 1 km}}\n"
+                              "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");
     interview->has_geometry =
         file_tells(interview, "sonject: 1\ninput: {geometry: from_file}\n"
                               "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");

@@ -147,6 +147,8 @@ static void add_input(FILE *file, const struct interview *interview)
         add_text(file, "  array: ", options->array);
         fputc('\n', file);
     }
+    if (interview->is_complex)
+        fputs("  complex: true # the two channels are real and imaginary part\n", file);
     add_text(file, "  calibration: ", last_part(interview->calibration));
     fputs(" # grey-level curve, noise floor and more, as measured\n", file);
     if (interview->has_geometry) {

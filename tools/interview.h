@@ -32,6 +32,7 @@ struct interview {
     char folder[NAME];               /* folder of relative names; "": the scene's */
     char *objects;                   /* override with the target's file; owned; NULL: none */
     bool has_mesh;                   /* the target is a mesh */
+    bool is_complex;                 /* the image's pixels are */
     bool has_geometry, has_altitude; /* in the image's file */
     /* Facts from the calibration of the image; NAN: not found. */
     bool has_nadir;

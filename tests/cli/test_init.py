@@ -45,6 +45,18 @@ def test_what_it_writes_runs(sonject, image):
     assert (image.parent / "out" / "truth.json").exists()
 
 
+def test_complex_pixels_make_a_scene_and_a_campaign(sonject, tmp_path):
+    """The file says that its pixels are complex, so nobody need say it again."""
+    chance = numpy.random.default_rng(1)
+    pixels = chance.normal(size=(ROWS, COLUMNS)) + 1j * chance.normal(size=(ROWS, COLUMNS))
+    numpy.save(tmp_path / "swath.npy", pixels.astype(numpy.complex64))
+    start(sonject, "swath.npy", "--campaign")
+    assert "  complex: true # " in (tmp_path / "swath.yaml").read_text()
+    sonject.done("run", "swath.yaml", "-o", "out")
+    assert numpy.load(tmp_path / "out" / "image.npy").dtype == numpy.complex64
+    sonject.done("check", "swath_campaign.yaml")
+
+
 def test_a_wrong_answer_is_asked_for_again(sonject, image):
     answer = start(sonject, "swath.npy", answers=["", "5 xx", "-1 m", *ANSWERS])
     assert "unit 'xx' is not one of m, km, cm, mm" in answer.stderr and "must be" in answer.stderr
