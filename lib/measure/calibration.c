@@ -393,37 +393,51 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
 }
 
 /* Returns how badly a row suits a first target, dB: 1 dB for each 5 % that its altitude differs
- * from the median. */
+ * from the median, and 1 dB for each 2.5 % of the rows that it lies nearer to an edge than a
+ * quarter of them. An edge would cut the target. */
 static double oddness_of_row(const struct calibration *found, size_t row)
 {
     const double returned = found->median_return > 0.0 ? found->returns.columns[row] : 0.0;
-    return returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0;
+    const double to_edge = fmin((double)row, (double)(found->rows - row)) / (double)found->rows;
+    return (returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0) +
+           40.0 * fmax(0.0, 0.25 - to_edge);
 }
 
-/* Finds how far highlights can rise over the seabed before they clip, in the middle columns, where
- * objects without a position are placed. The place for a first target is a dark tile there, so that
- * the target stands out, in a row of usual altitude. */
+/* Returns whether a column is in the middle third of the columns of its side. Objects without a
+ * position are placed there. */
+static bool is_amid_side(const struct calibration *found, size_t column)
+{
+    const double end = (double)found->columns - 0.5;
+    const double nadir = found->returns.sides == WATER_BETWEEN ? found->returns.nadir_column : -0.5;
+    const double off = (double)column - nadir;
+    const double share = off < 0.0 ? off / (-0.5 - nadir) : off / (end - nadir);
+    return share >= 1.0 / 3.0 && share < 2.0 / 3.0;
+}
+
+/* Finds how far highlights can rise over the seabed before they clip, in the middle columns of a
+ * side. The place for a first target is a dark tile there, so that the target stands out, in a row
+ * that suits it. */
 static void find_room(struct calibration *found, const struct stored_swath *swath)
 {
     const double *levels = found->fits[found->family].levels;
     double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
     found->room_db.how = "the ceiling, or the largest number that pixels hold, over plain tiles in "
-                         "the middle third of the columns; row and column are the place of one "
-                         "that is darker than most";
+                         "the middle third of a side's columns; row and column are the place of "
+                         "one that is darker than most";
     found->room_db.unseen = swath->unit > 0.0 ? NULL : found->full_scale.unseen;
     if (found->room_db.unseen)
         return;
     for (size_t i = 0; i < found->tiles.count; i++) {
-        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
         const double level = DECIBELS * levels[i];
-        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3)
+        if (!is_amid_side(found, found->tiles.columns[i] + found->tiles.side / 2))
             continue;
         count += 1.0;
         sum += level;
         squares += level * level;
     }
     if (count < 2.0) {
-        found->room_db.unseen = "fewer than two plain tiles are in the middle third of the columns";
+        found->room_db.unseen =
+            "fewer than two plain tiles are in the middle third of a side's columns";
         return;
     }
     const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
@@ -435,7 +449,7 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
         const size_t row = found->tiles.rows[i] + found->tiles.side / 2;
         const double off =
             fabs(DECIBELS * levels[i] - (mean - deviation)) + oddness_of_row(found, row);
-        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3 || off >= least)
+        if (!is_amid_side(found, middle) || off >= least)
             continue;
         least = off;
         found->plain_row = row;

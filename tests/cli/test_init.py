@@ -281,6 +281,32 @@ def test_the_target_lies_where_the_altitude_is_a_usual_one(sonject, tmp_path):
     assert water[row] == pytest.approx(150, rel=0.15)
 
 
+@pytest.mark.parametrize("dark", [slice(0, 100), slice(ROWS - 100, ROWS)])
+def test_the_target_lies_away_from_the_images_edges(sonject, tmp_path, dark):
+    """The first and the last rows are the darkest. A target there would be cut."""
+    level = numpy.ones((ROWS, 1))
+    level[dark] = 10 ** (-3 / 20)
+    numpy.save(tmp_path / "swath.npy", (Made("amplitude").numbers * level).astype(numpy.uint16))
+    start(sonject, "swath.npy")
+    row = int(re.search(r"position: {row: (\d+), ", (tmp_path / "swath.yaml").read_text())[1])
+    assert 100 < row < ROWS - 100
+
+
+def test_the_level_of_two_sides_is_that_of_the_middle_of_a_side(sonject, tmp_path):
+    """The seabed falls 12 dB with range. At the middle of a side it is 14 dB under the ceiling, as far as objects there
+    can rise. Near the nadir it is 4 dB brighter."""
+    chance = numpy.random.default_rng(3)
+    off = numpy.abs(numpy.arange(2 * COLUMNS) - (COLUMNS - 0.5)) / COLUMNS
+    seabed = numpy.where(off < 0.15, -50.0, 12 * (0.5 - off))
+    speckle = numpy.abs(chance.normal(size=(ROWS, off.size)) + 1j * chance.normal(size=(ROWS, off.size))) * 0.5**0.5
+    decibels = 20 * numpy.log10(speckle) + seabed + 50
+    numpy.save(tmp_path / "two.npy", numpy.clip(decibels / 64 * 255, 0, 255).round().astype(numpy.uint8))
+    start(sonject, "two.npy", answers=["5 cm", "5 cm", "port", "", "100 kHz", "30 kHz", ""])
+    text = (tmp_path / "two_calibration.yaml").read_text()
+    assert "sides: two" in text
+    assert float(re.search(r"ceiling_over_seabed:\n    value: (\S+)", text)[1]) == pytest.approx(14, abs=1)
+
+
 def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
