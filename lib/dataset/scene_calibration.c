@@ -162,17 +162,21 @@ void tell_calibration_doubts(struct report *report, const struct scene *scene)
 {
     const double share = scene->recorded_over_first_return;
     const char *side = scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard";
-    if (*scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0)
+    const bool is_of_other_side =
+        *scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0;
+    if (is_of_other_side)
         report_note(report,
                     "%s was measured on the %s side, and this is %s: calibrate that (sonject "
                     "calibrate --channel %s), or write input.calibration: auto",
                     scene->calibration, scene->calibrated_side, side, side);
-    if (scene->calibrated_leftward && !*scene->calibrated_side &&
-        scene->geometry.nadir_column <= 0.0)
+    if (scene->calibrated_leftward && !is_of_other_side && scene->geometry.nadir_column <= 0.0)
         report_note(report,
                     "%s found the water column at the image's right edge, and here range grows to "
-                    "the right: if it grows to the left, give input.geometry.nadir_column",
-                    scene->calibration);
+                    "the right: if it grows to the left, give input.geometry.nadir_column%s",
+                    scene->calibration,
+                    *scene->calibrated_side ? " with row_spacing and column_spacing, in place of "
+                                              "from_file"
+                                            : "");
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE &&
         scene->altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0)
         report_note(

@@ -300,6 +300,28 @@ def test_first_returns_are_those_of_the_mirrored_image(sonject, tmp_path):
     assert answers["edge"] == pytest.approx(answers["right"] + 0.01, abs=1e-3)
 
 
+@pytest.mark.parametrize("is_far_first", [True, False])
+def test_a_recording_whose_port_side_is_stored_from_near_to_far_is_noted(sonject, tmp_path, is_far_first):
+    """XTF files hold port from far to near. In one that does not, the water column lies at the far end."""
+    numbers = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
+    port = numbers if is_far_first else numbers[:, ::-1]
+    (tmp_path / "line.xtf").write_bytes(xtf_bytes(port, numbers))
+    sonject.done("calibrate", "line.xtf", "--channel", "port", "-o", "line.yaml")
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(f"""sonject: 1
+input: {{path: line.xtf, channel: port, calibration: line.yaml, geometry: from_file}}
+sonar: {{altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}}
+objects: [{{shape: sphere, diameter: 0.4 m, position: {{row: {ROWS // 2}, column: {COLUMNS // 2}}}}}]
+""")
+    note = "found the water column at the image's right edge"
+    assert (note in sonject.done("check", "scene.yaml").stdout) == (not is_far_first)
+    if not is_far_first:  # what the note says helps
+        text = scene.read_text().replace(
+            "from_file", f"{{row_spacing: 10 cm, column_spacing: 5 cm, nadir_column: {COLUMNS - 0.5}, side: port}}")
+        scene.write_text(text)
+        assert note not in sonject.done("check", "scene.yaml").stdout
+
+
 def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
