@@ -203,6 +203,18 @@ def write_line(folder, change=lambda made: made.numbers, **options):
     (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.full(ROWS, ALTITUDE), **options))
 
 
+@pytest.mark.parametrize("unit, why", [("m", " m, is larger than the patch"), ("mm", " mm large")])
+def test_a_mesh_of_an_impossible_size_is_told_with_its_unit(sonject, image, unit, why):
+    """A cone of 1000 or 1 units is no target in metres or in millimetres."""
+    size = 1000 if unit == "m" else 1
+    corners = [(0, 0), (size, 0), (size, size), (0, size)]
+    faces = [(1, 5, 2), (2, 5, 3), (3, 5, 4), (4, 5, 1), (1, 2, 3), (1, 3, 4)]
+    lines = [f"v {x} {y} 0" for x, y in corners] + [f"v {size / 2} {size / 2} {size / 2}"]
+    (image.parent / "mine.obj").write_text("\n".join(lines + [f"f {a} {c} {b}" for a, b, c in faces]) + "\n")
+    answer = init(sonject, "swath.npy", "--target", "mine.obj", answers=[*ANSWERS, unit, ""])
+    assert answer.returncode == 3 and why in answer.stderr and "mesh.unit" in answer.stderr, answer.stderr
+
+
 def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
     write_mesh(tmp_path)
     write_line(tmp_path)
