@@ -174,15 +174,15 @@ static double measured(const char *calibration, const char *key)
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
-/* Returns the row or column of the plain place whose ceiling the calibration gives; NAN if none. */
+/* Returns the row or column of the plain place whose level the calibration gives; NAN if none. */
 static double placed(const char *calibration, const char *axis)
 {
     char sought[ANSWER];
     const char *rest;
     double number;
-    const char *ceiling = strstr(calibration, "\n  ceiling_over_seabed:\n    value: ");
+    const char *seabed = strstr(calibration, "\n  seabed_level:\n    value: ");
     snprintf(sought, sizeof sought, "\n    %s: ", axis);
-    const char *found = ceiling ? strstr(ceiling, sought) : NULL;
+    const char *found = seabed ? strstr(seabed, sought) : NULL;
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
@@ -216,6 +216,9 @@ static sonject_status learn(struct interview *interview, char **text)
     interview->full_scale = measured(*text, "full_scale");
     interview->largest_number = measured(*text, "largest_number");
     interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
+    interview->seabed_db = measured(*text, "seabed_level");
+    interview->is_decibel = strstr(*text, "\n    kind: decibel") != NULL;
+    interview->is_amplitude = strstr(*text, "\n    kind: amplitude") != NULL;
     interview->plain_row = placed(*text, "row");
     interview->plain_column = placed(*text, "column");
     interview->is_complex =

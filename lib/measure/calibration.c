@@ -364,8 +364,9 @@ void calibration_clear(struct calibration *calibration)
 static void fill_unseen(struct calibration *found)
 {
     struct estimate *const all[] = {
-        &found->transfer_kind, &found->parameter,     &found->looks,          &found->shape,
-        &found->along_rows,    &found->range_columns, &found->noise_floor_db, &found->room_db};
+        &found->transfer_kind,  &found->parameter,  &found->looks,
+        &found->shape,          &found->along_rows, &found->range_columns,
+        &found->noise_floor_db, &found->room_db,    &found->seabed_db};
     for (size_t i = 0; i < COUNT(all); i++)
         all[i]->unseen = too_small;
 }
@@ -414,19 +415,35 @@ static bool is_amid_side(const struct calibration *found, size_t column)
     return share >= 1.0 / 3.0 && share < 2.0 / 3.0;
 }
 
-/* Finds how far highlights can rise over the seabed before they clip, in the middle columns of a
- * side. The place for a first target is a dark tile there, so that the target stands out, in a row
- * that suits it. */
-static void find_room(struct calibration *found, const struct stored_swath *swath)
+/* Finds a place for a first target: a dark tile of the plain seabed, so that the target stands out,
+ * in a row that suits it. */
+static void find_place(struct calibration *found, double level_db)
 {
     const double *levels = found->fits[found->family].levels;
-    double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
-    found->room_db.how = "the ceiling, or the largest number that pixels hold, over plain tiles in "
-                         "the middle third of a side's columns; row and column are the place of "
-                         "one that is darker than most";
-    found->room_db.unseen = swath->unit > 0.0 ? NULL : found->full_scale.unseen;
-    if (found->room_db.unseen)
-        return;
+    double least = INFINITY;
+    for (size_t i = 0; i < found->tiles.count; i++) {
+        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
+        const size_t row = found->tiles.rows[i] + found->tiles.side / 2;
+        const double off = fabs(DECIBELS * levels[i] - level_db) + oddness_of_row(found, row);
+        if (!is_amid_side(found, middle) || off >= least)
+            continue;
+        least = off;
+        found->plain_row = row;
+        found->plain_column = middle;
+    }
+}
+
+/* Finds the level of the plain seabed in the middle columns of a side, and how far highlights can
+ * rise over it before they clip. */
+static void find_seabed(struct calibration *found, const struct stored_swath *swath)
+{
+    const double *levels = found->fits[found->family].levels;
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    found->seabed_db.how =
+        "mean level of plain tiles in the middle third of a side's columns, over "
+        "an amplitude of 1, which is full scale except in decibel curves; row "
+        "and column are the place of one that is darker than most";
+    found->room_db.how = "the ceiling, or the largest number that pixels hold, over those tiles";
     for (size_t i = 0; i < found->tiles.count; i++) {
         const double level = DECIBELS * levels[i];
         if (!is_amid_side(found, found->tiles.columns[i] + found->tiles.side / 2))
@@ -435,26 +452,23 @@ static void find_room(struct calibration *found, const struct stored_swath *swat
         sum += level;
         squares += level * level;
     }
-    if (count < 2.0) {
-        found->room_db.unseen =
-            "fewer than two plain tiles are in the middle third of a side's columns";
+    found->seabed_db.unseen =
+        count < 2.0 ? "fewer than two plain tiles are in the middle third of a side's columns"
+                    : NULL;
+    found->room_db.unseen = found->seabed_db.unseen ? found->seabed_db.unseen
+                            : swath->unit > 0.0     ? NULL
+                                                    : found->full_scale.unseen;
+    if (found->seabed_db.unseen)
         return;
-    }
     const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
+    found->seabed_db.value = mean;
+    found->seabed_db.error = deviation / sqrt(count);
+    find_place(found, mean - deviation);
+    if (found->room_db.unseen)
+        return;
     found->room_db.value =
         DECIBELS * pixel_log_intensity(found, swath, curve_full_scale(found, swath)) - mean;
-    found->room_db.error = deviation / sqrt(count);
-    for (size_t i = 0; i < found->tiles.count; i++) {
-        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
-        const size_t row = found->tiles.rows[i] + found->tiles.side / 2;
-        const double off =
-            fabs(DECIBELS * levels[i] - (mean - deviation)) + oddness_of_row(found, row);
-        if (!is_amid_side(found, middle) || off >= least)
-            continue;
-        least = off;
-        found->plain_row = row;
-        found->plain_column = middle;
-    }
+    found->room_db.error = found->seabed_db.error;
 }
 
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
@@ -483,7 +497,7 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
     if (status == SONJECT_OK && !found->transfer_kind.unseen)
         status = find_parts(report, found, swath);
     if (status == SONJECT_OK && !found->transfer_kind.unseen)
-        find_room(found, swath);
+        find_seabed(found, swath);
     if (!found->full_scale.unseen)
         found->transfer.full_scale = found->full_scale.value;
     found->transfer.parameter =

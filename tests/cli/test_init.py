@@ -11,6 +11,7 @@ import pytest
 
 import recordings
 from made_swaths import COLUMNS, KINDS, LEVEL_DB, ROWS, Made
+from measured_images import read_png
 
 ANSWERS = ["5 cm", "2.5 cm", "44 m", "10 m", "100 kHz", "30 kHz", ""]
 
@@ -45,16 +46,32 @@ def test_what_it_writes_runs(sonject, image):
     assert (image.parent / "out" / "truth.json").exists()
 
 
-def test_complex_pixels_make_a_scene_and_a_campaign(sonject, tmp_path):
-    """The file says that its pixels are complex, so nobody need say it again."""
+def speckle(bits=None):
+    """Returns complex speckle of power 1e-6, or its amplitudes as numbers of so many bits."""
     chance = numpy.random.default_rng(1)
-    pixels = chance.normal(size=(ROWS, COLUMNS)) + 1j * chance.normal(size=(ROWS, COLUMNS))
-    numpy.save(tmp_path / "swath.npy", pixels.astype(numpy.complex64))
-    start(sonject, "swath.npy", "--campaign")
+    field = (chance.normal(size=(ROWS, COLUMNS)) + 1j * chance.normal(size=(ROWS, COLUMNS))) * 0.5**0.5 * 1e-3
+    return field.astype(numpy.complex64) if bits is None else numpy.round(abs(field) * 2e6).astype(numpy.uint16)
+
+
+def test_complex_pixels_make_a_scene(sonject, tmp_path):
+    """The file says that its pixels are complex, so nobody need say it again."""
+    numpy.save(tmp_path / "swath.npy", speckle())
+    start(sonject, "swath.npy")
     assert "  complex: true # " in (tmp_path / "swath.yaml").read_text()
     sonject.done("run", "swath.yaml", "-o", "out")
     assert numpy.load(tmp_path / "out" / "image.npy").dtype == numpy.complex64
-    sonject.done("check", "swath_campaign.yaml")
+
+
+@pytest.mark.parametrize("bits", [None, 16])
+def test_detectors_get_images_of_8_bits(sonject, tmp_path, bits):
+    """The seabed, 35 dB over black, is neither black nor white."""
+    numpy.save(tmp_path / "swath.npy", speckle(bits))
+    start(sonject, "swath.npy", "--campaign")
+    black, white = map(int, re.search(r"\ngrey: \[(-?\d+) dB, (-?\d+) dB\]", (tmp_path / "swath_campaign.yaml").read_text()).groups())
+    sonject.done("campaign", "swath_campaign.yaml", "-o", "set", "--set", "images=2", "--set", "empty=1", "--set", "clutter.alone=0")
+    for path in sorted((tmp_path / "set" / "all" / "images").iterdir()):
+        seabed = numpy.median(read_png(path)) / 255 * (white - black)
+        assert seabed == pytest.approx(35 - 1.6, abs=1.5)  # the median is 1.6 dB under the mean, and limits are rounded
 
 
 def test_a_wrong_answer_is_asked_for_again(sonject, image):
