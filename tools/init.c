@@ -279,6 +279,18 @@ static sonject_status draw(const struct interview *interview, const char *channe
     return sonject_quicklook(interview->context, &params);
 }
 
+/* Removes the files of a scene that an answer made unusable, so that the same command can ask
+ * again. */
+static void remove_files(const struct interview *interview)
+{
+    const char *const files[] = {interview->scene, interview->calibration, interview->picture,
+                                 interview->other_calibration, interview->other_picture};
+    for (int i = 0; i < 5; i++)
+        if (*files[i] && file_exists(files[i]))
+            (void)remove(files[i]);
+    message("init: no file is left: give the command again, with other answers if they were wrong");
+}
+
 /* Writes the scene and its files, and checks the scene as sonject check does. Returns the exit
  * code. */
 static int write_files(struct interview *interview, const char *calibration, const char *other)
@@ -297,8 +309,11 @@ static int write_files(struct interview *interview, const char *calibration, con
     if (status == SONJECT_OK && other)
         status = draw(interview, other_side(interview->options), interview->other_picture);
     sonject_scene_release(&scene);
-    if (status != SONJECT_OK)
-        return fail_with(interview->context, status);
+    if (status != SONJECT_OK) {
+        const int code = fail_with(interview->context, status);
+        remove_files(interview);
+        return code;
+    }
     const bool is_written = !*interview->campaign || write_campaign(interview, checked);
     fputs(checked, stdout);
     sonject_text_release(&checked);

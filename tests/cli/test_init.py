@@ -230,6 +230,8 @@ def test_a_mesh_of_an_impossible_size_is_told_with_its_unit(sonject, image, unit
     (image.parent / "mine.obj").write_text("\n".join(lines + [f"f {a} {c} {b}" for a, b, c in faces]) + "\n")
     answer = init(sonject, "swath.npy", "--target", "mine.obj", answers=[*ANSWERS, unit, ""])
     assert answer.returncode == 3 and why in answer.stderr and "mesh.unit" in answer.stderr, answer.stderr
+    assert sorted(path.name for path in image.parent.iterdir()) == ["mine.obj", "swath.npy"]
+    start(sonject, "swath.npy", "--target", "mine.obj", answers=[*ANSWERS, "mm" if unit == "m" else "m", ""])
 
 
 def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
