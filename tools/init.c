@@ -248,17 +248,40 @@ static void learn_other_side(struct interview *interview, char **text)
     sonject_context_release(&context);
 }
 
-/* Draws a side of the image, or both sides about the nadir. */
-static sonject_status draw(const struct interview *interview, const char *channel,
-                           const char *picture)
+/* Writes the curve that a calibration gives as one line, such as {kind: gamma, parameter: 2.2}.
+ * Returns it, or NULL if there is none. */
+static const char *curve_of(const char *calibration, char curve[4 * ANSWER])
 {
-    char geometry[4 * ANSWER];
-    const sonject_quicklook_params params = {.struct_size = sizeof params,
-                                             .image = interview->options->image,
-                                             .picture = picture,
-                                             .channel = channel,
-                                             .array = interview->options->array,
-                                             .geometry = interview->has_geometry ? NULL : geometry};
+    const char *from = strstr(calibration, "\n  transfer:\n");
+    const char *end = strstr(calibration, "\nmeasured:");
+    size_t length = 0;
+    if (!from || (end && from > end))
+        return NULL;
+    for (const char *line = from + strlen("\n  transfer:\n"); strncmp(line, "    ", 4) == 0;) {
+        const int bytes = (int)strcspn(line, "\n");
+        length += (size_t)snprintf(curve + length, 4 * ANSWER - length, "%s%.*s",
+                                   length > 0 ? ", " : "{", bytes - 4, line + 4);
+        if (length + 2 > 4 * ANSWER)
+            return NULL;
+        line += bytes + (line[bytes] == '\n');
+    }
+    snprintf(curve + length, 4 * ANSWER - length, "}");
+    return length > 0 ? curve : NULL;
+}
+
+/* Draws a side of the image, or both sides about the nadir, by the curve that was measured. */
+static sonject_status draw(const struct interview *interview, const char *channel,
+                           const char *calibration, const char *picture)
+{
+    char geometry[4 * ANSWER], curve[4 * ANSWER];
+    const sonject_quicklook_params params = {
+        .struct_size = sizeof params,
+        .image = interview->options->image,
+        .picture = picture,
+        .channel = channel,
+        .array = interview->options->array,
+        .transfer = interview->is_complex ? NULL : curve_of(calibration, curve),
+        .geometry = interview->has_geometry ? NULL : geometry};
     if (!interview->has_geometry) {
         const int length =
             snprintf(geometry, sizeof geometry, "{row_spacing: %s, column_spacing: %s",
@@ -305,9 +328,9 @@ static int write_files(struct interview *interview, const char *calibration, con
     if (status == SONJECT_OK)
         status = sonject_check(interview->context, scene, &checked);
     if (status == SONJECT_OK)
-        status = draw(interview, interview->options->channel, interview->picture);
+        status = draw(interview, interview->options->channel, calibration, interview->picture);
     if (status == SONJECT_OK && other)
-        status = draw(interview, other_side(interview->options), interview->other_picture);
+        status = draw(interview, other_side(interview->options), other, interview->other_picture);
     sonject_scene_release(&scene);
     if (status != SONJECT_OK) {
         const int code = fail_with(interview->context, status);

@@ -74,6 +74,16 @@ def test_detectors_get_images_of_8_bits(sonject, tmp_path, bits):
         assert seabed == pytest.approx(35 - 1.6, abs=1.5)  # the median is 1.6 dB under the mean, and limits are rounded
 
 
+@pytest.mark.parametrize("kind", ["amplitude", "gamma", "decibel"])
+def test_the_picture_has_the_levels_of_the_measured_curve(sonject, tmp_path, kind):
+    numpy.save(tmp_path / "swath.npy", Made(kind, share=1.0).numbers)
+    start(sonject, "swath.npy")
+    parameter = re.search(r"\n    parameter: (\S+)", (tmp_path / "swath_calibration.yaml").read_text())
+    sonject.done("quicklook", "swath.npy", "-o", "expected.png", "--row-spacing", "5cm", "--column-spacing", "2.5cm", "--first-range",
+                 "44m", "--transfer", f"{kind}:{parameter[1]}" if parameter else kind)
+    assert (tmp_path / "swath_quicklook.png").read_bytes() == (tmp_path / "expected.png").read_bytes()
+
+
 def test_a_wrong_answer_is_asked_for_again(sonject, image):
     answer = start(sonject, "swath.npy", answers=["", "5 xx", "-1 m", *ANSWERS])
     assert "unit 'xx' is not one of m, km, cm, mm" in answer.stderr and "must be" in answer.stderr
