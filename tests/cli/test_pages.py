@@ -158,7 +158,7 @@ def project(tmp_path_factory, environment):
     type_in("sonject seabed -o image.png --rows 472 --columns 512 --first-range 43.6125")
     type_in("sonject seabed -o my_swath.tif --rows 400 --columns 500 --row-spacing 0.05 "
             "--first-range 30")
-    type_in("sonject convert my_swath.tif ground.tif --range-axis ground --altitude 10")
+    (folder / "ground.tif").write_bytes(images.tiff_bytes(swath))
     (folder / "mine.yaml").write_text(own_scene())
     for number in (1, 2, 3):
         (folder / f"swath_{number}.tif").write_bytes(images.tiff_bytes(swath * number))
@@ -290,7 +290,8 @@ MISTAKES = {
     "missing; add it ...": "sonject check scene.yaml --set 'sonar={frequency: 100 kHz, bandwidth: 30 kHz}'",
     "unit ... is not one of ...": "sonject check scene.yaml --set 'sonar.frequency=100 km'",
     "lies outside the patch ...": "sonject check scene.yaml --set 'objects[0].position={row: 500, column: 3}'",
-    "is in ground range ...": "sonject check scene.yaml --set input.path=ground.tif",
+    "is in ground range ...": "sonject convert my_swath.tif stated.tif --range-axis ground --altitude 10 && "
+                              "sonject check scene.yaml --set input.path=stated.tif",
     "is of no format that sonject knows ...": "sonject check scene.yaml --set input.path=campaign.yaml",
     "there is no such scene file ...": "sonject check none.yaml",
     "holds another result ...": "sonject run scene.yaml -o mistake && sonject run scene.yaml -o mistake --seed 2",
