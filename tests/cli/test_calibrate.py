@@ -322,6 +322,37 @@ objects: [{{shape: sphere, diameter: 0.4 m, position: {{row: {ROWS // 2}, column
         assert note not in sonject.done("check", "scene.yaml").stdout
 
 
+def test_first_returns_of_another_swath_are_noted(sonject, tmp_path):
+    """A second line beside the first one takes the first one's calibration from the scene, and so its altitudes."""
+    for name, water in ("one", 120), ("two", 90):
+        numbers = Made("amplitude", water=numpy.full(ROWS, water)).numbers
+        (tmp_path / f"{name}.xtf").write_bytes(xtf_bytes(numbers, numbers))
+        sonject.done("calibrate", f"{name}.xtf", "--channel", "port", "-o", f"{name}.yaml")
+    (tmp_path / "scene.yaml").write_text("""sonject: 1
+input: {path: one.xtf, channel: port, calibration: one.yaml, geometry: from_file}
+sonar: {altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}
+objects: [{shape: sphere, diameter: 0.4 m}]
+""")
+    note = "one.yaml was measured on another swath than two.xtf"
+    answers = {calibration: sonject.done("check", "scene.yaml", "--set", "input.path=two.xtf", "--set", f"input.calibration={calibration}.yaml")
+               for calibration in ("one", "two")}
+    assert note in answers["one"].stdout and "another swath" not in answers["two"].stdout
+    assert "another swath" not in sonject.done("check", "scene.yaml").stdout
+    assert "another swath" not in sonject.done("check", "scene.yaml", "--set", "input.path=two.xtf", "--set", "sonar.altitude=from_file").stdout
+    for calibration in "one", "two":
+        (tmp_path / "campaign.yaml").write_text(f"""sonject_campaign: 1
+scene: scene.yaml
+images: 2
+chip: {{rows: 32, columns: 64}}
+swaths:
+  - {{path: one.xtf}}
+  - {{path: two.xtf, set: {{input.calibration: {calibration}.yaml}}}}
+targets: [{{class: ball, object: {{shape: sphere, diameter: 0.4 m}}}}]
+""")
+        for arguments in ["check", "campaign.yaml"], ["campaign", "campaign.yaml", "-o", calibration]:
+            assert (note in sonject.done(*arguments).stderr) == (calibration == "one")
+
+
 def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))

@@ -166,7 +166,8 @@ def project(tmp_path_factory, environment):
     both = numpy.hstack([swath] * 8)
     (folder / "both_sides.tif").write_bytes(images.tiff_bytes(both))
     samples = numpy.rint(1000 * swath).astype("<u2")
-    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
+    for name in ("line.xtf", "line_2.xtf"):
+        (folder / name).write_bytes(recordings.xtf_bytes(samples, samples))
     (folder / "my_mine.stl").write_text(stl_of_a_box(300, 1200, 300))
     for source in ("tools/targets/rock.obj", "tests/unit/pulse.csv"):
         (folder / pathlib.Path(source).name).write_bytes((SOURCE / source).read_bytes())
