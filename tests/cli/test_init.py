@@ -278,7 +278,7 @@ def test_a_line_where_nothing_clips_has_grey_levels_up_to_the_largest_number(son
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """Runs all commands but the last, which needs scikit-learn: test_train_detector.py runs that one."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, run, calibrate, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
@@ -286,6 +286,8 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     start(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over 0.25 degrees
     sonject.done(*run[1:])
+    (tmp_path / "line_2.xtf").write_bytes((tmp_path / "line.xtf").read_bytes())
+    sonject.done(*calibrate[1:])
     assert re.findall(r"line.xtf, (\w+): .* leave [1-9][0-9.]* % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "line_quicklook.png", "line_starboard_quicklook.png", "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:

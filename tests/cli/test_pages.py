@@ -40,9 +40,9 @@ TYPED = {
     "sonject quicklook IMAGE -o PNG": "sonject quicklook whole/image.tif -o look.png",
     "sonject convert IN OUT": "sonject convert swath.tif swath.npy",
     "sonject convert --range-axis slant":
-        "sonject convert swath.tif ground.tif --range-axis ground --row-spacing 0.025 "
+        "sonject convert swath.tif told.tif --range-axis ground --row-spacing 0.025 "
         "--column-spacing 0.025 --first-range 25 --altitude 10 && "
-        "sonject convert ground.tif slant.tif --range-axis slant",
+        "sonject convert told.tif untold.tif --range-axis slant",
     "sonject seabed -o IMAGE": "sonject seabed -o seabed.tif",
     "sonject VERB --help": "sonject measure --help",
     "sonject help KEY": "sonject help sonar.frequency && sonject help sonar.",
@@ -228,7 +228,7 @@ def test_every_example_scene_is_run():
 
 def test_every_option_exists():
     tables = "".join(path.read_text(encoding="utf-8") for path in (SOURCE / "tools").glob("*.[ch]"))
-    known = set(re.findall(r'\{"(--[a-z-]+)"', tables)) | {"--help"}
+    known = set(re.findall(r'[{ ]"(--[a-z-]+)",', tables)) | {"--help"}
     named = {option for name in PAGES for span in spans(name)
              if span.startswith("--") or span.startswith("sonject ")
              for option in re.findall(r"(?<!\S)--[a-z-]+", span)}
