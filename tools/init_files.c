@@ -213,8 +213,9 @@ bool write_scene(const struct interview *interview)
     fputs("\n    ", file);
     add_target(file, interview, "\n    ");
     if (interview->has_nadir || isnan(interview->plain_row))
-        fputs("\n    # position: {row: 100, column: 200} # without it, the middle of the image",
-              file);
+        fprintf(file,
+                "\n    # position: {row: 100, column: 200} # without it, the middle of the %s",
+                interview->has_nadir ? "side" : "image");
     else
         fprintf(file, "\n    position: {row: %.0f, column: %.0f} # a plain place of the seabed",
                 interview->plain_row, interview->plain_column);

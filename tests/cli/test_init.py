@@ -357,6 +357,7 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     assert re.search(r"slant range 0\.\d+\.\.\.39\.\d+ m, starboard", answer.stdout), answer.stdout  # 800 columns of 5 cm
     text = (tmp_path / "both_campaign.yaml").read_text()
     assert re.findall(r"side: (\w+)", text) == ["starboard", "port"]
+    assert "# without it, the middle of the side" in (tmp_path / "both.yaml").read_text()
     columns, spacing = re.search(r"columns: (\d+), spread.* a column (\S+) m", text).groups()
     assert spacing == "0.05"
     shadow = 0.75 * COLUMNS * 0.5 / (120 * 0.05 - 0.5)  # in columns, as in the chips of a recording
