@@ -69,13 +69,12 @@ const struct verb convert_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "Without --db no sample changes. OUT is .tif, .png, .npy or .h5. It keeps the geometry "
-        "that is\n"
-        "known, but not IN's tags and further pages. With --into FILE it has FILE's format, which "
-        "may\n"
-        "also be XTF, JSF or MATLAB, and all else in FILE. Samples that a file cannot hold are\n"
-        "refused, never clipped; only in recordings that scale each ping (JSF, some XTF), numbers\n"
-        "beyond a ping's samples become the largest one.",
+        "With --range-axis slant, an image that does not state its axis is taken to be in ground\n"
+        "range, and so is --first-range. Without --db no sample changes. OUT is .tif, .png, .npy\n"
+        "or .h5. It keeps the geometry that is known, but not IN's tags and further pages. With\n"
+        "--into FILE it has FILE's format, which may also be XTF, JSF or MATLAB, and all else in\n"
+        "FILE. Samples that a file cannot hold are refused, never clipped; only in recordings\n"
+        "that scale each ping (JSF, some XTF), numbers beyond a ping's samples become the largest.",
     .options_size = sizeof(struct convert_options),
     .work = work,
 };

@@ -174,15 +174,15 @@ static double measured(const char *calibration, const char *key)
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
-/* Returns the row or column of the plain place whose ceiling the calibration gives; NAN if none. */
+/* Returns the row or column of the plain place whose level the calibration gives; NAN if none. */
 static double placed(const char *calibration, const char *axis)
 {
     char sought[ANSWER];
     const char *rest;
     double number;
-    const char *ceiling = strstr(calibration, "\n  ceiling_over_seabed:\n    value: ");
+    const char *seabed = strstr(calibration, "\n  seabed_level:\n    value: ");
     snprintf(sought, sizeof sought, "\n    %s: ", axis);
-    const char *found = ceiling ? strstr(ceiling, sought) : NULL;
+    const char *found = seabed ? strstr(seabed, sought) : NULL;
     return found && text_to_number(found + strlen(sought), &number, &rest) ? number : NAN;
 }
 
@@ -216,8 +216,15 @@ static sonject_status learn(struct interview *interview, char **text)
     interview->full_scale = measured(*text, "full_scale");
     interview->largest_number = measured(*text, "largest_number");
     interview->ceiling_over_seabed_db = measured(*text, "ceiling_over_seabed");
+    interview->seabed_db = measured(*text, "seabed_level");
+    interview->is_decibel = strstr(*text, "\n    kind: decibel") != NULL;
+    interview->is_amplitude = strstr(*text, "\n    kind: amplitude") != NULL;
     interview->plain_row = placed(*text, "row");
     interview->plain_column = placed(*text, "column");
+    interview->is_complex =
+        file_tells(interview, "sonject: 1\ninput: {complex: true, geometry: {row_spacing: 1 cm, "
+                              "column_spacing: 1 cm, first_slant_range: 1 km}}\n"
+                              "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");
     interview->has_geometry =
         file_tells(interview, "sonject: 1\ninput: {geometry: from_file}\n"
                               "sonar: {altitude: 1 mm, frequency: 1 kHz, bandwidth: 1 Hz}\n");
@@ -241,17 +248,40 @@ static void learn_other_side(struct interview *interview, char **text)
     sonject_context_release(&context);
 }
 
-/* Draws a side of the image, or both sides about the nadir. */
-static sonject_status draw(const struct interview *interview, const char *channel,
-                           const char *picture)
+/* Writes the curve that a calibration gives as one line, such as {kind: gamma, parameter: 2.2}.
+ * Returns it, or NULL if there is none. */
+static const char *curve_of(const char *calibration, char curve[4 * ANSWER])
 {
-    char geometry[4 * ANSWER];
-    const sonject_quicklook_params params = {.struct_size = sizeof params,
-                                             .image = interview->options->image,
-                                             .picture = picture,
-                                             .channel = channel,
-                                             .array = interview->options->array,
-                                             .geometry = interview->has_geometry ? NULL : geometry};
+    const char *from = strstr(calibration, "\n  transfer:\n");
+    const char *end = strstr(calibration, "\nmeasured:");
+    size_t length = 0;
+    if (!from || (end && from > end))
+        return NULL;
+    for (const char *line = from + strlen("\n  transfer:\n"); strncmp(line, "    ", 4) == 0;) {
+        const int bytes = (int)strcspn(line, "\n");
+        length += (size_t)snprintf(curve + length, 4 * ANSWER - length, "%s%.*s",
+                                   length > 0 ? ", " : "{", bytes - 4, line + 4);
+        if (length + 2 > 4 * ANSWER)
+            return NULL;
+        line += bytes + (line[bytes] == '\n');
+    }
+    snprintf(curve + length, 4 * ANSWER - length, "}");
+    return length > 0 ? curve : NULL;
+}
+
+/* Draws a side of the image, or both sides about the nadir, by the curve that was measured. */
+static sonject_status draw(const struct interview *interview, const char *channel,
+                           const char *calibration, const char *picture)
+{
+    char geometry[4 * ANSWER], curve[4 * ANSWER];
+    const sonject_quicklook_params params = {
+        .struct_size = sizeof params,
+        .image = interview->options->image,
+        .picture = picture,
+        .channel = channel,
+        .array = interview->options->array,
+        .transfer = interview->is_complex ? NULL : curve_of(calibration, curve),
+        .geometry = interview->has_geometry ? NULL : geometry};
     if (!interview->has_geometry) {
         const int length =
             snprintf(geometry, sizeof geometry, "{row_spacing: %s, column_spacing: %s",
@@ -272,6 +302,18 @@ static sonject_status draw(const struct interview *interview, const char *channe
     return sonject_quicklook(interview->context, &params);
 }
 
+/* Removes the files of a scene that an answer made unusable, so that the same command can ask
+ * again. */
+static void remove_files(const struct interview *interview)
+{
+    const char *const files[] = {interview->scene, interview->calibration, interview->picture,
+                                 interview->other_calibration, interview->other_picture};
+    for (int i = 0; i < 5; i++)
+        if (*files[i] && file_exists(files[i]))
+            (void)remove(files[i]);
+    message("init: no file is left: give the command again, with other answers if they were wrong");
+}
+
 /* Writes the scene and its files, and checks the scene as sonject check does. Returns the exit
  * code. */
 static int write_files(struct interview *interview, const char *calibration, const char *other)
@@ -286,12 +328,15 @@ static int write_files(struct interview *interview, const char *calibration, con
     if (status == SONJECT_OK)
         status = sonject_check(interview->context, scene, &checked);
     if (status == SONJECT_OK)
-        status = draw(interview, interview->options->channel, interview->picture);
+        status = draw(interview, interview->options->channel, calibration, interview->picture);
     if (status == SONJECT_OK && other)
-        status = draw(interview, other_side(interview->options), interview->other_picture);
+        status = draw(interview, other_side(interview->options), other, interview->other_picture);
     sonject_scene_release(&scene);
-    if (status != SONJECT_OK)
-        return fail_with(interview->context, status);
+    if (status != SONJECT_OK) {
+        const int code = fail_with(interview->context, status);
+        remove_files(interview);
+        return code;
+    }
     const bool is_written = !*interview->campaign || write_campaign(interview, checked);
     fputs(checked, stdout);
     sonject_text_release(&checked);

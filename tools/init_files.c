@@ -15,6 +15,7 @@
 #define USUAL_LEVEL_DB  15.0
 #define OVER_CEILING_DB 2.0  /* a peak's excess over the ceiling, as its place is dark */
 #define FAINTEST_DB     8.0  /* faintest peaks of a campaign; measured ones have 8 to 19 dB */
+#define HIGHLIGHTS_DB   20.0 /* white over seabed */
 #define SHADOWS_DB      35.0 /* seabed over black; darker shadows need no grey levels */
 #define CHIP_MOST       512.0
 
@@ -147,6 +148,8 @@ static void add_input(FILE *file, const struct interview *interview)
         add_text(file, "  array: ", options->array);
         fputc('\n', file);
     }
+    if (interview->is_complex)
+        fputs("  complex: true # the two channels are real and imaginary part\n", file);
     add_text(file, "  calibration: ", last_part(interview->calibration));
     fputs(" # grey-level curve, noise floor and more, as measured\n", file);
     if (interview->has_geometry) {
@@ -210,8 +213,9 @@ bool write_scene(const struct interview *interview)
     fputs("\n    ", file);
     add_target(file, interview, "\n    ");
     if (interview->has_nadir || isnan(interview->plain_row))
-        fputs("\n    # position: {row: 100, column: 200} # without it, the middle of the image",
-              file);
+        fprintf(file,
+                "\n    # position: {row: 100, column: 200} # without it, the middle of the %s",
+                interview->has_nadir ? "side" : "image");
     else
         fprintf(file, "\n    position: {row: %.0f, column: %.0f} # a plain place of the seabed",
                 interview->plain_row, interview->plain_column);
@@ -278,18 +282,24 @@ static void add_chip(FILE *file, const struct interview *interview, const char *
             (checked.last_m - checked.first_m) / (checked.columns - 1.0));
 }
 
-/* Adds grey levels for detectors, which read 8 bits: from well below shadows to a recording's
- * ceiling, which is the largest number where nothing clips. */
+/* Adds grey levels for detectors, which read 8 bits: from well below shadows to the ceiling, which
+ * is the largest number where nothing clips. Floats have none: there, white is over bright
+ * highlights. Levels over full scale do not suit numbers that are decibels. */
 static void add_grey(FILE *file, const struct interview *interview)
 {
+    const bool is_whole = interview->largest_number > 1.0;
     const double ceiling =
         isnan(interview->full_scale) ? interview->largest_number : interview->full_scale;
-    const double white = 20.0 * log10(ceiling / interview->largest_number);
-    const double black = white - interview->ceiling_over_seabed_db - SHADOWS_DB;
-    if (*interview->other_calibration && ceiling > 255.0 && isfinite(black))
+    const double white = is_whole ? 20.0 * log10(ceiling / interview->largest_number)
+                                  : interview->seabed_db + HIGHLIGHTS_DB;
+    const double black =
+        (is_whole ? white - interview->ceiling_over_seabed_db : interview->seabed_db) - SHADOWS_DB;
+    const bool is_suited =
+        is_whole ? ceiling > 255.0 && !interview->is_decibel : interview->is_amplitude;
+    if (is_suited && isfinite(black))
         fprintf(file,
                 "grey: [%.0f dB, %.0f dB] # black and white of 8 bit images; without this line "
-                "images have 16 bits\n",
+                "images have the swath's type, which detectors may not read\n",
                 floor(black), ceil(white));
 }
 

@@ -74,7 +74,7 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
                                 sonject_scene **scene)
 {
     const struct init_options *options = interview->options;
-    const char *overrides[ANSWERS + 5];
+    const char *overrides[ANSWERS + 6];
     char path[2 * NAME], channel[ANSWER], array[2 * NAME];
     uint32_t count = 0;
     write_name(path, "input.path", options->image);
@@ -85,6 +85,8 @@ sonject_status read_image_scene(const struct interview *interview, const char *t
         overrides[count++] = channel;
     if (options->array)
         overrides[count++] = array;
+    if (interview->is_complex)
+        overrides[count++] = "input.complex=true";
     if (answer_about(interview, array_length.key))
         overrides[count++] = "sonar.kind=real";
     if (interview->objects && (interview->count == 0 || answer_about(interview, unit.key)))

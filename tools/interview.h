@@ -32,13 +32,15 @@ struct interview {
     char folder[NAME];               /* folder of relative names; "": the scene's */
     char *objects;                   /* override with the target's file; owned; NULL: none */
     bool has_mesh;                   /* the target is a mesh */
+    bool is_complex;                 /* the image's pixels are */
     bool has_geometry, has_altitude; /* in the image's file */
     /* Facts from the calibration of the image; NAN: not found. */
     bool has_nadir;
-    bool is_reversed; /* range grows to the left, as answered */
-    bool has_returns; /* first returns were found, which give the altitude */
+    bool is_reversed;              /* range grows to the left, as answered */
+    bool is_decibel, is_amplitude; /* the kind of the curve */
+    bool has_returns;              /* first returns were found, which give the altitude */
     double columns, nadir_column, frequency_hz, column_spacing_m, altitude_m, recorded_altitude_m,
-        full_scale, largest_number, ceiling_over_seabed_db, plain_row, plain_column;
+        full_scale, largest_number, ceiling_over_seabed_db, seabed_db, plain_row, plain_column;
     bool assumes_bandwidth; /* the answer is the bandwidth of the column spacing */
 };
 

@@ -28,8 +28,9 @@ typedef struct sonject_convert_params {
                             copy */
     const char *channel; /* channel; see sonject_quicklook_params, also for array and geometry */
     const char *array;
-    const char *geometry; /* geometry in slant range; NULL: the input's own. Refused for an input in
-                             ground range */
+    const char *geometry; /* geometry in slant range; NULL: the input's own. Refused for an input
+                             that states ground range. With the axis SLANT, for an input that does
+                             not state its axis: geometry in ground range, also its first range */
     double altitude_m;    /* 0: the input's own */
     double black_db; /* level of black in 8 bit grey levels, relative to full scale: 255, 65535 or,
                         for floats, 1 */

@@ -107,7 +107,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
         if (campaign->campaign.format == FORMAT_AS_INPUT)
             swath->jpeg_quality = swath_file_jpeg_quality(file);
         status = measure_rows(campaign, number, &trial.scene, file);
-        tell_calibration_doubts(campaign->report, &trial.scene);
+        tell_calibration_doubts(campaign->report, &trial.scene, campaign->swath_hashes[number]);
     }
     if (status == SONJECT_OK)
         report_log(campaign->report,

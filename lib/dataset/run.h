@@ -170,9 +170,9 @@ sonject_status calibration_files_list(struct report *report, const struct scene 
 /* Logs which keys a scene has from its calibration. */
 void tell_calibration(struct report *report, const struct scene *scene);
 
-/* Logs doubts about the scene's calibration: made for another side, or first returns that disagree
- * with the scene's recorded altitude. */
-void tell_calibration_doubts(struct report *report, const struct scene *scene);
+/* Logs doubts about the scene's calibration: made for another side or swath, or first returns that
+ * disagree with the scene's recorded altitude. hash: of the scene's swath. */
+void tell_calibration_doubts(struct report *report, const struct scene *scene, const char *hash);
 
 /* Logs what a scene's user should know before it is run. */
 void tell_scene(struct report *report, const struct scene *scene, const struct swath *swath);

@@ -1,6 +1,7 @@
 /* What a run tells of its scene and result. */
 #include <math.h>
 
+#include "base/json_document.h"
 #include "base/report.h"
 #include "dataset/run.h"
 #include "swath/geometry_notes.h"
@@ -79,7 +80,11 @@ void tell_scene(struct report *report, const struct scene *scene, const struct s
     tell_grey_levels(report, scene->input_path, swath->grey_db, &scene->transfer);
     tell_sediment(report, scene);
     tell_altitudes(report, scene);
-    tell_calibration_doubts(report, scene);
+    char hash[HASH_TEXT_CAPACITY] = "";
+    if (*scene->calibrated_hash && scene->altitude_by == ALTITUDE_OF_RETURNS &&
+        file_hash(report, scene->input_path, hash) != SONJECT_OK)
+        *hash = '\0'; /* who reads the file says why it cannot be read */
+    tell_calibration_doubts(report, scene, hash);
 }
 
 /* Notes objects that no labeller would find, and objects of which little but white is left. */

@@ -158,21 +158,32 @@ void tell_calibration(struct report *report, const struct scene *scene)
     report_log(report, "calibration %s gives %s", scene->calibration, *keys ? keys : "nothing");
 }
 
-void tell_calibration_doubts(struct report *report, const struct scene *scene)
+void tell_calibration_doubts(struct report *report, const struct scene *scene, const char *hash)
 {
     const double share = scene->recorded_over_first_return;
     const char *side = scene->geometry.side == SONJECT_SIDE_PORT ? "port" : "starboard";
-    if (*scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0)
+    const bool is_of_other_side =
+        *scene->calibrated_side && strcmp(scene->calibrated_side, side) != 0;
+    if (is_of_other_side)
         report_note(report,
                     "%s was measured on the %s side, and this is %s: calibrate that (sonject "
                     "calibrate --channel %s), or write input.calibration: auto",
                     scene->calibration, scene->calibrated_side, side, side);
-    if (scene->calibrated_leftward && !*scene->calibrated_side &&
-        scene->geometry.nadir_column <= 0.0)
+    if (scene->altitude_by == ALTITUDE_OF_RETURNS && *scene->calibrated_hash && *hash &&
+        strcmp(scene->calibrated_hash, hash) != 0)
+        report_note(report,
+                    "%s was measured on another swath than %s, and altitudes by first returns are "
+                    "those of its pings: calibrate this swath (sonject calibrate %s -o FILE), and "
+                    "name that file as input.calibration",
+                    scene->calibration, scene->input_path, scene->input_path);
+    if (scene->calibrated_leftward && !is_of_other_side && scene->geometry.nadir_column <= 0.0)
         report_note(report,
                     "%s found the water column at the image's right edge, and here range grows to "
-                    "the right: if it grows to the left, give input.geometry.nadir_column",
-                    scene->calibration);
+                    "the right: if it grows to the left, give input.geometry.nadir_column%s",
+                    scene->calibration,
+                    *scene->calibrated_side ? " with row_spacing and column_spacing, in place of "
+                                              "from_file"
+                                            : "");
     if (share > 0.0 && fabs(share - 1.0) > ALTITUDES_ALIKE &&
         scene->altitude_by == ALTITUDE_RECORDED && scene->pings.count == 0)
         report_note(

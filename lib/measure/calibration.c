@@ -364,8 +364,9 @@ void calibration_clear(struct calibration *calibration)
 static void fill_unseen(struct calibration *found)
 {
     struct estimate *const all[] = {
-        &found->transfer_kind, &found->parameter,     &found->looks,          &found->shape,
-        &found->along_rows,    &found->range_columns, &found->noise_floor_db, &found->room_db};
+        &found->transfer_kind,  &found->parameter,  &found->looks,
+        &found->shape,          &found->along_rows, &found->range_columns,
+        &found->noise_floor_db, &found->room_db,    &found->seabed_db};
     for (size_t i = 0; i < COUNT(all); i++)
         all[i]->unseen = too_small;
 }
@@ -393,54 +394,81 @@ static sonject_status find_from_tiles(struct report *report, struct calibration 
 }
 
 /* Returns how badly a row suits a first target, dB: 1 dB for each 5 % that its altitude differs
- * from the median. */
+ * from the median, and 1 dB for each 2.5 % of the rows that it lies nearer to an edge than a
+ * quarter of them. An edge would cut the target. */
 static double oddness_of_row(const struct calibration *found, size_t row)
 {
     const double returned = found->median_return > 0.0 ? found->returns.columns[row] : 0.0;
-    return returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0;
+    const double to_edge = fmin((double)row, (double)(found->rows - row)) / (double)found->rows;
+    return (returned > 0.0 ? 20.0 * fabs(log(returned / found->median_return)) : 0.0) +
+           40.0 * fmax(0.0, 0.25 - to_edge);
 }
 
-/* Finds how far highlights can rise over the seabed before they clip, in the middle columns, where
- * objects without a position are placed. The place for a first target is a dark tile there, so that
- * the target stands out, in a row of usual altitude. */
-static void find_room(struct calibration *found, const struct stored_swath *swath)
+/* Returns whether a column is in the middle third of the columns of its side. Objects without a
+ * position are placed there. */
+static bool is_amid_side(const struct calibration *found, size_t column)
+{
+    const double end = (double)found->columns - 0.5;
+    const double nadir = found->returns.sides == WATER_BETWEEN ? found->returns.nadir_column : -0.5;
+    const double off = (double)column - nadir;
+    const double share = off < 0.0 ? off / (-0.5 - nadir) : off / (end - nadir);
+    return share >= 1.0 / 3.0 && share < 2.0 / 3.0;
+}
+
+/* Finds a place for a first target: a dark tile of the plain seabed, so that the target stands out,
+ * in a row that suits it. */
+static void find_place(struct calibration *found, double level_db)
 {
     const double *levels = found->fits[found->family].levels;
-    double count = 0.0, sum = 0.0, squares = 0.0, least = INFINITY;
-    found->room_db.how = "the ceiling, or the largest number that pixels hold, over plain tiles in "
-                         "the middle third of the columns; row and column are the place of one "
-                         "that is darker than most";
-    found->room_db.unseen = swath->unit > 0.0 ? NULL : found->full_scale.unseen;
-    if (found->room_db.unseen)
-        return;
-    for (size_t i = 0; i < found->tiles.count; i++) {
-        const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
-        const double level = DECIBELS * levels[i];
-        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3)
-            continue;
-        count += 1.0;
-        sum += level;
-        squares += level * level;
-    }
-    if (count < 2.0) {
-        found->room_db.unseen = "fewer than two plain tiles are in the middle third of the columns";
-        return;
-    }
-    const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
-    found->room_db.value =
-        DECIBELS * pixel_log_intensity(found, swath, curve_full_scale(found, swath)) - mean;
-    found->room_db.error = deviation / sqrt(count);
+    double least = INFINITY;
     for (size_t i = 0; i < found->tiles.count; i++) {
         const size_t middle = found->tiles.columns[i] + found->tiles.side / 2;
         const size_t row = found->tiles.rows[i] + found->tiles.side / 2;
-        const double off =
-            fabs(DECIBELS * levels[i] - (mean - deviation)) + oddness_of_row(found, row);
-        if (middle < found->columns / 3 || middle >= 2 * found->columns / 3 || off >= least)
+        const double off = fabs(DECIBELS * levels[i] - level_db) + oddness_of_row(found, row);
+        if (!is_amid_side(found, middle) || off >= least)
             continue;
         least = off;
         found->plain_row = row;
         found->plain_column = middle;
     }
+}
+
+/* Finds the level of the plain seabed in the middle columns of a side, and how far highlights can
+ * rise over it before they clip. */
+static void find_seabed(struct calibration *found, const struct stored_swath *swath)
+{
+    const double *levels = found->fits[found->family].levels;
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    found->seabed_db.how =
+        "mean level of plain tiles in the middle third of a side's columns, over "
+        "an amplitude of 1, which is full scale except in decibel curves; row "
+        "and column are the place of one that is darker than most";
+    found->room_db.how = "the ceiling, or the largest number that pixels hold, over those tiles";
+    for (size_t i = 0; i < found->tiles.count; i++) {
+        const double level = DECIBELS * levels[i];
+        if (!is_amid_side(found, found->tiles.columns[i] + found->tiles.side / 2))
+            continue;
+        count += 1.0;
+        sum += level;
+        squares += level * level;
+    }
+    found->seabed_db.unseen =
+        count < 2.0 ? "fewer than two plain tiles are in the middle third of a side's columns"
+                    : NULL;
+    found->room_db.unseen = found->seabed_db.unseen ? found->seabed_db.unseen
+                            : swath->unit > 0.0     ? NULL
+                                                    : found->full_scale.unseen;
+    if (found->seabed_db.unseen)
+        return;
+    const double mean = sum / count, deviation = sqrt(fmax(0.0, squares / count - mean * mean));
+    found->seabed_db.value = mean;
+    found->seabed_db.error = deviation / sqrt(count);
+    find_place(found, mean - deviation);
+    if (found->room_db.unseen)
+        return;
+    found->room_db.value =
+        DECIBELS * pixel_log_intensity(found, swath, curve_full_scale(found, swath)) - mean;
+    found->room_db.error = found->seabed_db.error;
 }
 
 sonject_status calibrate_swath(struct report *report, const struct stored_swath *swath,
@@ -469,7 +497,7 @@ sonject_status calibrate_swath(struct report *report, const struct stored_swath 
     if (status == SONJECT_OK && !found->transfer_kind.unseen)
         status = find_parts(report, found, swath);
     if (status == SONJECT_OK && !found->transfer_kind.unseen)
-        find_room(found, swath);
+        find_seabed(found, swath);
     if (!found->full_scale.unseen)
         found->transfer.full_scale = found->full_scale.value;
     found->transfer.parameter =

@@ -118,7 +118,8 @@ struct calibration {
     size_t grain[2]; /* rows and columns of a grain of speckle, rounded down, 1...GRAIN_MOST */
     double largest_number; /* that the swath's type holds */
     struct estimate full_scale, clipped, looks, shape;
-    struct estimate room_db;        /* ceiling over the seabed in the middle columns, dB */
+    struct estimate seabed_db;      /* level of the seabed in a side's middle columns, over 1 */
+    struct estimate room_db;        /* ceiling over that, dB */
     size_t plain_row, plain_column; /* middle of a plain tile there that is darker than most */
     struct estimate along_rows, range_columns; /* half-power widths of the response, pixels */
     struct estimate noise_floor_db;            /* over the seabed around shadows */

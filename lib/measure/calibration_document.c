@@ -223,12 +223,13 @@ json_t *calibration_document(const struct calibration *found, const char *path, 
     json_add(&measured, "largest_number", JSON_OBJECT({"value", number_of(found->largest_number)}));
     json_add(&measured, "full_scale", seen(&found->full_scale, NULL));
     json_add(&measured, "clipped", seen(&found->clipped, NULL));
-    json_t *room = seen(&found->room_db, "dB");
-    if (!found->room_db.unseen) {
-        json_add(&room, "row", json_count(found->plain_row));
-        json_add(&room, "column", json_count(found->plain_column));
+    json_t *seabed = seen(&found->seabed_db, "dB");
+    if (!found->seabed_db.unseen) {
+        json_add(&seabed, "row", json_count(found->plain_row));
+        json_add(&seabed, "column", json_count(found->plain_column));
     }
-    json_add(&measured, "ceiling_over_seabed", room);
+    json_add(&measured, "seabed_level", seabed);
+    json_add(&measured, "ceiling_over_seabed", seen(&found->room_db, "dB"));
     json_add(&measured, "looks", seen(&found->looks, NULL));
     json_add(&measured, "k_shape", seen(&found->shape, NULL));
     json_add(

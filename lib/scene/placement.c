@@ -275,14 +275,17 @@ static sonject_status check_object_size(const struct placing *placing, const cha
     if (placed->size_m < SMALLEST_WAVELENGTHS * view->wavelength_m)
         return report_failure(placing->report, SONJECT_ERROR_INPUT,
                               "object '%s' is %.3g mm large, which is less than half the "
-                              "wavelength of %.3g mm: make it larger or raise sonar.frequency",
+                              "wavelength of %.3g mm: check its sizes (of a mesh, mesh.unit), or "
+                              "raise sonar.frequency",
                               name, 1e3 * placed->size_m, 1e3 * view->wavelength_m);
-    if (overall_size(parts, placed->part_count, 0) > patch_length ||
-        overall_size(parts, placed->part_count, 1) > patch_width)
+    const double along = overall_size(parts, placed->part_count, 0);
+    const double across = overall_size(parts, placed->part_count, 1);
+    if (along > patch_length || across > patch_width)
         return report_failure(placing->report, SONJECT_ERROR_INPUT,
-                              "object '%s' is larger than the patch of %.2f m x %.2f m: use a "
-                              "larger patch",
-                              name, patch_length, patch_width);
+                              "object '%s', %.4g m x %.4g m, is larger than the patch of %.2f m x "
+                              "%.2f m: check its sizes (of a mesh, mesh.unit), or use a larger "
+                              "patch",
+                              name, along, across, patch_length, patch_width);
     for (uint32_t i = 0; i < placed->part_count; i++)
         if (parts[i].centre[2] + placement_extent(&parts[i], upward) >= view->altitude_m ||
             placement_range(&parts[i], view) <= 2.0 * parts[i].bounding_radius_m)

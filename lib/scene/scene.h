@@ -7,6 +7,7 @@
 
 #include <sonject/elements.h>
 
+#include "base/hash.h"
 #include "base/report.h"
 #include "medium/water.h"
 #include "mesh/mesh.h"
@@ -63,6 +64,7 @@ struct scene {
     char *calibration;        /* owned; the file that input.calibration names; NULL: none */
     char *calibrated;         /* owned; the keys taken from that file, one per line; NULL: none */
     char calibrated_side[12]; /* side of the calibration's image, as keys name it; "": not given */
+    char calibrated_hash[HASH_TEXT_CAPACITY]; /* of the calibration's image; "": not given */
     bool calibrated_leftward; /* range grows to the left in the calibration's image of one side */
     double recorded_over_first_return; /* median of recorded altitudes over first returns; 0: not
                                           given */

@@ -127,15 +127,18 @@ static bool asks_for_returns(const struct tree_node *scene)
     return altitude && is_word(altitude, "first_return");
 }
 
-/* Takes the side and the altitudes that the calibration was measured on. */
+/* Takes the swath, the side and the altitudes that the calibration was measured on. */
 static void take_measured(struct scene *scene, const struct tree_node *measured)
 {
     const struct tree_node *side = tree_value(measured, "side");
     const struct tree_node *sides = tree_value(measured, "sides");
+    const struct tree_node *hash = tree_value(measured, "swath_xxh3");
     const double share =
         number_of_text(tree_value(tree_value(measured, "recorded_altitude"), "over_first_return"));
     if (side && side->kind == TREE_TEXT && side->text)
         snprintf(scene->calibrated_side, sizeof scene->calibrated_side, "%s", side->text);
+    if (hash && hash->kind == TREE_TEXT && hash->text)
+        snprintf(scene->calibrated_hash, sizeof scene->calibrated_hash, "%s", hash->text);
     scene->calibrated_leftward = sides && is_word(sides, LEFTWARD_SIDES);
     if (!isnan(share))
         scene->recorded_over_first_return = share;

@@ -41,7 +41,11 @@ static sonject_status take_geometry(struct report *report, struct conversion *co
             return input_failure(report, params->input,
                                  "says that it is in ground range, and a first slant range is "
                                  "given: take the geometry out");
-        geometry->axis = RANGE_SLANT;
+        /* who asks for slant range has an image in ground range */
+        geometry->axis =
+            geometry->axis == RANGE_UNKNOWN && params->range_axis == SONJECT_CONVERT_AXIS_SLANT
+                ? RANGE_GROUND
+                : RANGE_SLANT;
         geometry->row_spacing_m = options->geometry.row_spacing_m;
         geometry->column_spacing_m = options->geometry.column_spacing_m;
         geometry->first_along_track_m = options->geometry.first_along_track_m;
@@ -63,7 +67,7 @@ static sonject_status check_axis(struct report *report, const char *path, enum r
     if (columns->axis == RANGE_UNKNOWN || isnan(columns->first_m) || isnan(columns->spacing_m))
         return input_failure(report, path,
                              "does not say where its columns lie: give row spacing, column spacing "
-                             "and first slant range");
+                             "and first range");
     if (columns->axis == axis)
         return input_failure(report, path, "is in %s range already: take the range axis out",
                              is_ground ? "ground" : "slant");

@@ -8,12 +8,11 @@
 #include "base/memory.h"
 #include "base/units.h"
 
-#define PI                3.14159265358979323846
-#define METRES_PER_DEGREE (1852.0 * 60.0)
-#define EQUATOR_RADIUS_M  6378137.0
-#define ECCENTRICITY_2    6.69437999014e-3 /* squared eccentricity of WGS 84 */
-#define HIGHEST_LATITUDE  89.9 /* degrees; nearer to a pole, east and west mean nothing */
-#define COURSE_ROWS       25.0 /* rows on either side over which a course is measured */
+#define PI               3.14159265358979323846
+#define EQUATOR_RADIUS_M 6378137.0
+#define ECCENTRICITY_2   6.69437999014e-3 /* squared eccentricity of WGS 84 */
+#define HIGHEST_LATITUDE 89.9 /* degrees; nearer to a pole, east and west mean nothing */
+#define COURSE_ROWS      25.0 /* rows on either side over which a course is measured */
 
 /* Returns false for a ping that the recorder left empty or had no navigation for. */
 static bool ping_has_position(const struct recorded_ping *ping)
@@ -21,18 +20,27 @@ static bool ping_has_position(const struct recorded_ping *ping)
     return ping->easting != 0.0 || ping->northing != 0.0;
 }
 
+/* Finds the length of a unit of x and of y, m. */
+static void unit_sizes(bool is_geographic, double y, double *x_m, double *y_m)
+{
+    *x_m = *y_m = 1.0;
+    if (is_geographic) {
+        const double latitude = y / DEGREES_PER_RADIAN;
+        const double w = 1.0 - ECCENTRICITY_2 * sin(latitude) * sin(latitude);
+        *x_m = EQUATOR_RADIUS_M / sqrt(w) * cos(latitude) / DEGREES_PER_RADIAN;
+        *y_m = EQUATOR_RADIUS_M * (1.0 - ECCENTRICITY_2) / (w * sqrt(w)) / DEGREES_PER_RADIAN;
+    }
+}
+
 /* Returns the straight distance between two pings with positions, m. */
 static double distance_between(const struct recording *file, const struct recorded_ping *a,
                                const struct recorded_ping *b)
 {
-    double across = b->easting - a->easting;
-    double along = b->northing - a->northing;
-    if (file->is_geographic) {
-        const double latitude = 0.5 * (a->northing + b->northing) * PI / 180.0;
-        across = remainder(across, 360.0) * METRES_PER_DEGREE * cos(latitude);
-        along *= METRES_PER_DEGREE;
-    }
-    return hypot(across, along);
+    const double across = b->easting - a->easting;
+    double x_m, y_m;
+    unit_sizes(file->is_geographic, 0.5 * (a->northing + b->northing), &x_m, &y_m);
+    return hypot((file->is_geographic ? remainder(across, 360.0) : across) * x_m,
+                 (b->northing - a->northing) * y_m);
 }
 
 /* Extends a range of rows by its length on either side. Returns false if the range already held all
@@ -195,24 +203,12 @@ static void position_at(const struct track *track, double row, double *x, double
     *y = fixes[low].y + share * (fixes[high].y - fixes[low].y);
 }
 
-/* Finds the length of a unit of x and of y, m. */
-static void unit_sizes(const struct track *track, double y, double *x_m, double *y_m)
-{
-    *x_m = *y_m = 1.0;
-    if (track->is_geographic) {
-        const double latitude = y / DEGREES_PER_RADIAN;
-        const double w = 1.0 - ECCENTRICITY_2 * sin(latitude) * sin(latitude);
-        *x_m = EQUATOR_RADIUS_M / sqrt(w) * cos(latitude) / DEGREES_PER_RADIAN;
-        *y_m = EQUATOR_RADIUS_M * (1.0 - ECCENTRICITY_2) / (w * sqrt(w)) / DEGREES_PER_RADIAN;
-    }
-}
-
 static bool course_at(const struct track *track, double row, double *heading)
 {
     double x0, y0, x1, y1, x_m, y_m;
     position_at(track, fmax(0.0, row - COURSE_ROWS), &x0, &y0);
     position_at(track, fmin((double)track->rows - 1.0, row + COURSE_ROWS), &x1, &y1);
-    unit_sizes(track, 0.5 * (y0 + y1), &x_m, &y_m);
+    unit_sizes(track->is_geographic, 0.5 * (y0 + y1), &x_m, &y_m);
     const double east = step_in_x(track, x0, x1) * x_m;
     const double north = (y1 - y0) * y_m;
     *heading = atan2(east, north);
@@ -241,7 +237,7 @@ bool track_place(const struct track *track, double row, double ground_range_m, b
     else if (!course_at(track, row, &heading))
         return false;
     position_at(track, row, &x, &y);
-    unit_sizes(track, y, &x_m, &y_m);
+    unit_sizes(track->is_geographic, y, &x_m, &y_m);
     const double bearing = heading + (is_to_port ? -0.5 : 0.5) * PI;
     place->x = x + ground_range_m * sin(bearing) / x_m;
     place->y = y + ground_range_m * cos(bearing) / y_m;

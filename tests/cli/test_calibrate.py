@@ -300,6 +300,59 @@ def test_first_returns_are_those_of_the_mirrored_image(sonject, tmp_path):
     assert answers["edge"] == pytest.approx(answers["right"] + 0.01, abs=1e-3)
 
 
+@pytest.mark.parametrize("is_far_first", [True, False])
+def test_a_recording_whose_port_side_is_stored_from_near_to_far_is_noted(sonject, tmp_path, is_far_first):
+    """XTF files hold port from far to near. In one that does not, the water column lies at the far end."""
+    numbers = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
+    port = numbers if is_far_first else numbers[:, ::-1]
+    (tmp_path / "line.xtf").write_bytes(xtf_bytes(port, numbers))
+    sonject.done("calibrate", "line.xtf", "--channel", "port", "-o", "line.yaml")
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(f"""sonject: 1
+input: {{path: line.xtf, channel: port, calibration: line.yaml, geometry: from_file}}
+sonar: {{altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}}
+objects: [{{shape: sphere, diameter: 0.4 m, position: {{row: {ROWS // 2}, column: {COLUMNS // 2}}}}}]
+""")
+    note = "found the water column at the image's right edge"
+    assert (note in sonject.done("check", "scene.yaml").stdout) == (not is_far_first)
+    if not is_far_first:  # what the note says helps
+        text = scene.read_text().replace(
+            "from_file", f"{{row_spacing: 10 cm, column_spacing: 5 cm, nadir_column: {COLUMNS - 0.5}, side: port}}")
+        scene.write_text(text)
+        assert note not in sonject.done("check", "scene.yaml").stdout
+
+
+def test_first_returns_of_another_swath_are_noted(sonject, tmp_path):
+    """A second line beside the first one takes the first one's calibration from the scene, and so its altitudes."""
+    for name, water in ("one", 120), ("two", 90):
+        numbers = Made("amplitude", water=numpy.full(ROWS, water)).numbers
+        (tmp_path / f"{name}.xtf").write_bytes(xtf_bytes(numbers, numbers))
+        sonject.done("calibrate", f"{name}.xtf", "--channel", "port", "-o", f"{name}.yaml")
+    (tmp_path / "scene.yaml").write_text("""sonject: 1
+input: {path: one.xtf, channel: port, calibration: one.yaml, geometry: from_file}
+sonar: {altitude: first_return, frequency: 100 kHz, bandwidth: 37.5 kHz}
+objects: [{shape: sphere, diameter: 0.4 m}]
+""")
+    note = "one.yaml was measured on another swath than two.xtf"
+    answers = {calibration: sonject.done("check", "scene.yaml", "--set", "input.path=two.xtf", "--set", f"input.calibration={calibration}.yaml")
+               for calibration in ("one", "two")}
+    assert note in answers["one"].stdout and "another swath" not in answers["two"].stdout
+    assert "another swath" not in sonject.done("check", "scene.yaml").stdout
+    assert "another swath" not in sonject.done("check", "scene.yaml", "--set", "input.path=two.xtf", "--set", "sonar.altitude=from_file").stdout
+    for calibration in "one", "two":
+        (tmp_path / "campaign.yaml").write_text(f"""sonject_campaign: 1
+scene: scene.yaml
+images: 2
+chip: {{rows: 32, columns: 64}}
+swaths:
+  - {{path: one.xtf}}
+  - {{path: two.xtf, set: {{input.calibration: {calibration}.yaml}}}}
+targets: [{{class: ball, object: {{shape: sphere, diameter: 0.4 m}}}}]
+""")
+        for arguments in ["check", "campaign.yaml"], ["campaign", "campaign.yaml", "-o", calibration]:
+            assert (note in sonject.done(*arguments).stderr) == (calibration == "one")
+
+
 def test_both_sides_first_returns_begin_at_the_nadir(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))

@@ -258,6 +258,25 @@ def test_ground_range_and_back(sonject, tmp_path, line, sides):
                    "sonject convert --range-axis slant")
 
 
+def test_an_image_that_states_no_axis_is_in_ground_range_if_slant_range_is_asked_for(sonject, tmp_path):
+    """Each column holds its own number. Its place follows from Pythagoras, and the new file needs no more numbers."""
+    numbers = numpy.tile(numpy.arange(200, dtype=numpy.uint8), (20, 1))
+    (tmp_path / "ground.tif").write_bytes(images.tiff_bytes(numbers))
+    given = ["--first-range", "12m", "--row-spacing", "10cm", "--column-spacing", "5cm"]
+    assert_refused(sonject("convert", "ground.tif", "slant.tif", "--range-axis", "slant", *given), 3, "altitude")
+    sonject.done("convert", "ground.tif", "slant.tif", "--range-axis", "slant", *given, "--altitude", "9m")
+    slant = 15.0 + 0.05 * numpy.arange(images.read_tiff(tmp_path / "slant.tif").shape[1])  # 9, 12, 15
+    expected = numpy.rint((numpy.sqrt(slant**2 - 9**2) - 12.0) / 0.05)
+    assert slant[-1] == pytest.approx(numpy.hypot(12 + 0.05 * 199, 9), abs=0.051)
+    assert abs(images.read_tiff(tmp_path / "slant.tif")[7] - expected).max() == 0
+    (tmp_path / "scene.yaml").write_text(f"""sonject: 1
+input: {{path: slant.tif, transfer: {{kind: amplitude}}, geometry: from_file}}
+sonar: {{altitude: from_file, {SONAR}}}
+objects: [{BALL}]
+""")
+    assert "altitude 9 m" in sonject.done("check", "scene.yaml").stdout
+
+
 def test_a_recording_that_says_ground_range(sonject, tmp_path, line):
     data = bytearray(line.read_bytes())
     for channel in range(3):

@@ -11,6 +11,7 @@ import pytest
 
 import recordings
 from made_swaths import COLUMNS, KINDS, LEVEL_DB, ROWS, Made
+from measured_images import read_png
 
 ANSWERS = ["5 cm", "2.5 cm", "44 m", "10 m", "100 kHz", "30 kHz", ""]
 
@@ -43,6 +44,44 @@ def test_what_it_writes_runs(sonject, image):
     assert "kind: gamma" in (image.parent / "swath_calibration.yaml").read_text()
     sonject.done("run", "swath.yaml", "-o", "out")
     assert (image.parent / "out" / "truth.json").exists()
+
+
+def speckle(bits=None):
+    """Returns complex speckle of power 1e-6, or its amplitudes as numbers of so many bits."""
+    chance = numpy.random.default_rng(1)
+    field = (chance.normal(size=(ROWS, COLUMNS)) + 1j * chance.normal(size=(ROWS, COLUMNS))) * 0.5**0.5 * 1e-3
+    return field.astype(numpy.complex64) if bits is None else numpy.round(abs(field) * 2e6).astype(numpy.uint16)
+
+
+def test_complex_pixels_make_a_scene(sonject, tmp_path):
+    """The file says that its pixels are complex, so nobody need say it again."""
+    numpy.save(tmp_path / "swath.npy", speckle())
+    start(sonject, "swath.npy")
+    assert "  complex: true # " in (tmp_path / "swath.yaml").read_text()
+    sonject.done("run", "swath.yaml", "-o", "out")
+    assert numpy.load(tmp_path / "out" / "image.npy").dtype == numpy.complex64
+
+
+@pytest.mark.parametrize("bits", [None, 16])
+def test_detectors_get_images_of_8_bits(sonject, tmp_path, bits):
+    """The seabed, 35 dB over black, is neither black nor white."""
+    numpy.save(tmp_path / "swath.npy", speckle(bits))
+    start(sonject, "swath.npy", "--campaign")
+    black, white = map(int, re.search(r"\ngrey: \[(-?\d+) dB, (-?\d+) dB\]", (tmp_path / "swath_campaign.yaml").read_text()).groups())
+    sonject.done("campaign", "swath_campaign.yaml", "-o", "set", "--set", "images=2", "--set", "empty=1", "--set", "clutter.alone=0")
+    for path in sorted((tmp_path / "set" / "all" / "images").iterdir()):
+        seabed = numpy.median(read_png(path)) / 255 * (white - black)
+        assert seabed == pytest.approx(35 - 1.6, abs=1.5)  # the median is 1.6 dB under the mean, and limits are rounded
+
+
+@pytest.mark.parametrize("kind", ["amplitude", "gamma", "decibel"])
+def test_the_picture_has_the_levels_of_the_measured_curve(sonject, tmp_path, kind):
+    numpy.save(tmp_path / "swath.npy", Made(kind, share=1.0).numbers)
+    start(sonject, "swath.npy")
+    parameter = re.search(r"\n    parameter: (\S+)", (tmp_path / "swath_calibration.yaml").read_text())
+    sonject.done("quicklook", "swath.npy", "-o", "expected.png", "--row-spacing", "5cm", "--column-spacing", "2.5cm", "--first-range",
+                 "44m", "--transfer", f"{kind}:{parameter[1]}" if parameter else kind)
+    assert (tmp_path / "swath_quicklook.png").read_bytes() == (tmp_path / "expected.png").read_bytes()
 
 
 def test_a_wrong_answer_is_asked_for_again(sonject, image):
@@ -199,6 +238,20 @@ def write_line(folder, change=lambda made: made.numbers, **options):
     (folder / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=numpy.full(ROWS, ALTITUDE), **options))
 
 
+@pytest.mark.parametrize("unit, why", [("m", " m, is larger than the patch"), ("mm", " mm large")])
+def test_a_mesh_of_an_impossible_size_is_told_with_its_unit(sonject, image, unit, why):
+    """A cone of 1000 or 1 units is no target in metres or in millimetres."""
+    size = 1000 if unit == "m" else 1
+    corners = [(0, 0), (size, 0), (size, size), (0, size)]
+    faces = [(1, 5, 2), (2, 5, 3), (3, 5, 4), (4, 5, 1), (1, 2, 3), (1, 3, 4)]
+    lines = [f"v {x} {y} 0" for x, y in corners] + [f"v {size / 2} {size / 2} {size / 2}"]
+    (image.parent / "mine.obj").write_text("\n".join(lines + [f"f {a} {c} {b}" for a, b, c in faces]) + "\n")
+    answer = init(sonject, "swath.npy", "--target", "mine.obj", answers=[*ANSWERS, unit, ""])
+    assert answer.returncode == 3 and why in answer.stderr and "mesh.unit" in answer.stderr, answer.stderr
+    assert sorted(path.name for path in image.parent.iterdir()) == ["mine.obj", "swath.npy"]
+    start(sonject, "swath.npy", "--target", "mine.obj", answers=[*ANSWERS, "mm" if unit == "m" else "m", ""])
+
+
 def test_a_mesh_and_a_campaign_of_both_sides(sonject, tmp_path):
     write_mesh(tmp_path)
     write_line(tmp_path)
@@ -233,7 +286,7 @@ def test_a_line_where_nothing_clips_has_grey_levels_up_to_the_largest_number(son
 def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     """Runs all commands but the last, which needs scikit-learn: test_train_detector.py runs that one."""
     page = (pathlib.Path(os.environ["SONJECT_SOURCE"]) / "docs" / "first_detector.md").read_text()
-    begin, run, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
+    begin, run, calibrate, check, campaign, train = (shlex.split(line) for line in re.findall(r"^    (\w.*)", page, flags=re.M))
     write_mesh(tmp_path)
     (tmp_path / "rock.obj").rename(tmp_path / "my_mine.obj")
     write_line(tmp_path)
@@ -241,6 +294,8 @@ def test_the_pages_commands_make_a_data_set(sonject, tmp_path):
     start(sonject, *begin[2:], answers=["first_return", "600 kHz", "", "0.25 deg", "mm", ""])
     assert "array: {length: 0.508 m}" in (tmp_path / "line.yaml").read_text()  # 0.886 wavelengths over 0.25 degrees
     sonject.done(*run[1:])
+    (tmp_path / "line_2.xtf").write_bytes((tmp_path / "line.xtf").read_bytes())
+    sonject.done(*calibrate[1:])
     assert re.findall(r"line.xtf, (\w+): .* leave [1-9][0-9.]* % of the places", sonject.done(*check[1:]).stderr) == ["port", "starboard"]
     sonject.done(*campaign[1:], "--set", "images=10")
     for name in "line_quicklook.png", "line_starboard_quicklook.png", "one/report.html", "set/report.html", "set/data.yaml", "set/train/coco.json", "set/val/coco.json", train[2]:
@@ -277,6 +332,32 @@ def test_the_target_lies_where_the_altitude_is_a_usual_one(sonject, tmp_path):
     assert water[row] == pytest.approx(150, rel=0.15)
 
 
+@pytest.mark.parametrize("dark", [slice(0, 100), slice(ROWS - 100, ROWS)])
+def test_the_target_lies_away_from_the_images_edges(sonject, tmp_path, dark):
+    """The first and the last rows are the darkest. A target there would be cut."""
+    level = numpy.ones((ROWS, 1))
+    level[dark] = 10 ** (-3 / 20)
+    numpy.save(tmp_path / "swath.npy", (Made("amplitude").numbers * level).astype(numpy.uint16))
+    start(sonject, "swath.npy")
+    row = int(re.search(r"position: {row: (\d+), ", (tmp_path / "swath.yaml").read_text())[1])
+    assert 100 < row < ROWS - 100
+
+
+def test_the_level_of_two_sides_is_that_of_the_middle_of_a_side(sonject, tmp_path):
+    """The seabed falls 12 dB with range. At the middle of a side it is 14 dB under the ceiling, as far as objects there
+    can rise. Near the nadir it is 4 dB brighter."""
+    chance = numpy.random.default_rng(3)
+    off = numpy.abs(numpy.arange(2 * COLUMNS) - (COLUMNS - 0.5)) / COLUMNS
+    seabed = numpy.where(off < 0.15, -50.0, 12 * (0.5 - off))
+    speckle = numpy.abs(chance.normal(size=(ROWS, off.size)) + 1j * chance.normal(size=(ROWS, off.size))) * 0.5**0.5
+    decibels = 20 * numpy.log10(speckle) + seabed + 50
+    numpy.save(tmp_path / "two.npy", numpy.clip(decibels / 64 * 255, 0, 255).round().astype(numpy.uint8))
+    start(sonject, "two.npy", answers=["5 cm", "5 cm", "port", "", "100 kHz", "30 kHz", ""])
+    text = (tmp_path / "two_calibration.yaml").read_text()
+    assert "sides: two" in text
+    assert float(re.search(r"ceiling_over_seabed:\n    value: (\S+)", text)[1]) == pytest.approx(14, abs=1)
+
+
 def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     made = Made("amplitude", water=numpy.full(ROWS, 120)).numbers
     numpy.save(tmp_path / "both.npy", numpy.hstack([made[:, ::-1], made]))
@@ -284,6 +365,7 @@ def test_both_sides_of_an_image_are_two_swaths(sonject, tmp_path):
     assert re.search(r"slant range 0\.\d+\.\.\.39\.\d+ m, starboard", answer.stdout), answer.stdout  # 800 columns of 5 cm
     text = (tmp_path / "both_campaign.yaml").read_text()
     assert re.findall(r"side: (\w+)", text) == ["starboard", "port"]
+    assert "# without it, the middle of the side" in (tmp_path / "both.yaml").read_text()
     columns, spacing = re.search(r"columns: (\d+), spread.* a column (\S+) m", text).groups()
     assert spacing == "0.05"
     shadow = 0.75 * COLUMNS * 0.5 / (120 * 0.05 - 0.5)  # in columns, as in the chips of a recording

@@ -40,9 +40,9 @@ TYPED = {
     "sonject quicklook IMAGE -o PNG": "sonject quicklook whole/image.tif -o look.png",
     "sonject convert IN OUT": "sonject convert swath.tif swath.npy",
     "sonject convert --range-axis slant":
-        "sonject convert swath.tif ground.tif --range-axis ground --row-spacing 0.025 "
+        "sonject convert swath.tif told.tif --range-axis ground --row-spacing 0.025 "
         "--column-spacing 0.025 --first-range 25 --altitude 10 && "
-        "sonject convert ground.tif slant.tif --range-axis slant",
+        "sonject convert told.tif untold.tif --range-axis slant",
     "sonject seabed -o IMAGE": "sonject seabed -o seabed.tif",
     "sonject VERB --help": "sonject measure --help",
     "sonject help KEY": "sonject help sonar.frequency && sonject help sonar.",
@@ -158,7 +158,7 @@ def project(tmp_path_factory, environment):
     type_in("sonject seabed -o image.png --rows 472 --columns 512 --first-range 43.6125")
     type_in("sonject seabed -o my_swath.tif --rows 400 --columns 500 --row-spacing 0.05 "
             "--first-range 30")
-    type_in("sonject convert my_swath.tif ground.tif --range-axis ground --altitude 10")
+    (folder / "ground.tif").write_bytes(images.tiff_bytes(swath))
     (folder / "mine.yaml").write_text(own_scene())
     for number in (1, 2, 3):
         (folder / f"swath_{number}.tif").write_bytes(images.tiff_bytes(swath * number))
@@ -166,7 +166,8 @@ def project(tmp_path_factory, environment):
     both = numpy.hstack([swath] * 8)
     (folder / "both_sides.tif").write_bytes(images.tiff_bytes(both))
     samples = numpy.rint(1000 * swath).astype("<u2")
-    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
+    for name in ("line.xtf", "line_2.xtf"):
+        (folder / name).write_bytes(recordings.xtf_bytes(samples, samples))
     (folder / "my_mine.stl").write_text(stl_of_a_box(300, 1200, 300))
     for source in ("tools/targets/rock.obj", "tests/unit/pulse.csv"):
         (folder / pathlib.Path(source).name).write_bytes((SOURCE / source).read_bytes())
@@ -228,7 +229,7 @@ def test_every_example_scene_is_run():
 
 def test_every_option_exists():
     tables = "".join(path.read_text(encoding="utf-8") for path in (SOURCE / "tools").glob("*.[ch]"))
-    known = set(re.findall(r'\{"(--[a-z-]+)"', tables)) | {"--help"}
+    known = set(re.findall(r'[{ ]"(--[a-z-]+)",', tables)) | {"--help"}
     named = {option for name in PAGES for span in spans(name)
              if span.startswith("--") or span.startswith("sonject ")
              for option in re.findall(r"(?<!\S)--[a-z-]+", span)}
@@ -291,7 +292,8 @@ MISTAKES = {
     "missing; add it ...": "sonject check scene.yaml --set 'sonar={frequency: 100 kHz, bandwidth: 30 kHz}'",
     "unit ... is not one of ...": "sonject check scene.yaml --set 'sonar.frequency=100 km'",
     "lies outside the patch ...": "sonject check scene.yaml --set 'objects[0].position={row: 500, column: 3}'",
-    "is in ground range ...": "sonject check scene.yaml --set input.path=ground.tif",
+    "is in ground range ...": "sonject convert my_swath.tif stated.tif --range-axis ground --altitude 10 && "
+                              "sonject check scene.yaml --set input.path=stated.tif",
     "is of no format that sonject knows ...": "sonject check scene.yaml --set input.path=campaign.yaml",
     "there is no such scene file ...": "sonject check none.yaml",
     "holds another result ...": "sonject run scene.yaml -o mistake && sonject run scene.yaml -o mistake --seed 2",

@@ -36,15 +36,16 @@ def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, kind, nu
     assert_patch_alone_changed(before, after, number)
 
 
-def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides):
+@pytest.mark.parametrize("east, north", [(0.0, 1 / 111412.28), (1 / 55799.98, 0.0)])
+def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides, east, north):
+    """The steps are degrees of a metre at 60 degrees north, by the known series for the ellipsoid of WGS 84."""
     header = recordings.file_header([recordings.STARBOARD], units=3)
-    step = 0.1 / (1852 * 60)
     data = header + b"".join(
-        recordings.ping([(0, line.astype("<u2"))], position=(7.0, 60.0 + row * step))
+        recordings.ping([(0, line.astype("<u2"))], position=(7.0 + row * east, 60.0 + row * north))
         for row, line in enumerate(sides[1]))
     (tmp_path / "line.xtf").write_bytes(data)
     answer = sonject.done("check", write_scene(tmp_path, "line.xtf"))
-    assert "4.00 m along-track, slant range 9.07...26.92 m, starboard" in answer.stdout
+    assert "40.00 m along-track, slant range 9.07...26.92 m, starboard" in answer.stdout
 
 
 def test_empty_pings_change_no_geometry(sonject, tmp_path, sides):

@@ -260,6 +260,11 @@ def library_pixels(patch: Any, transfer: Any = None) -> tuple[s.sonject_pixels, 
     """
     if isinstance(patch, numpy.ma.MaskedArray):
         raise TypeError("a masked patch is refused: its mask would be lost")
+    if isinstance(patch, (str, os.PathLike)):
+        raise TypeError(
+            f"a patch is an array, not the file {os.fspath(patch)}: read its pixels first, or take "
+            "what works on files, such as run and calibrate"
+        )
     array = numpy.asarray(patch)
     if array.ndim != 2 or 0 in array.shape:
         raise ValueError(f"a patch has rows and columns, not the shape {array.shape}")

@@ -217,6 +217,7 @@ def test_a_repeated_row_is_not_taken_for_packed_rows():
         (numpy.ones((4, 4), bool), TypeError, "bool is refused"),
         (numpy.ones((4, 4), object), TypeError, "object is refused"),
         (numpy.ma.masked_less(numpy.ones((4, 4), numpy.float32), 2), TypeError, "masked"),
+        ("swath.png", TypeError, "read its pixels first"),
         (numpy.ones(4, numpy.float32), ValueError, "rows and columns"),
         (numpy.ones((4, 0), numpy.float32), ValueError, "rows and columns"),
         (numpy.full((4, 4), 1e300), ValueError, "beyond single precision"),
