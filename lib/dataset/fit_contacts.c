@@ -98,6 +98,26 @@ static const struct swath_plan *swath_of_image(const struct campaign *campaign, 
     return found;
 }
 
+/* Returns the value of input.array that the campaign sets for a swath, or "". */
+static const char *array_of(const struct swath_plan *swath)
+{
+    static const char key[] = "input.array=";
+    for (size_t i = 0; i < swath->key_count; i++)
+        if (strncmp(swath->keys[i], key, sizeof key - 1) == 0)
+            return swath->keys[i] + sizeof key - 1;
+    return "";
+}
+
+/* Returns whether another array of the swath's file is a swath, too. */
+static bool has_other_array(const struct campaign *campaign, const struct swath_plan *swath)
+{
+    for (size_t i = 0; i < campaign->swath_count; i++)
+        if (strcmp(campaign->swaths[i].path, swath->path) == 0 &&
+            strcmp(array_of(&campaign->swaths[i]), array_of(swath)) != 0)
+            return true;
+    return false;
+}
+
 /* Reads the campaign's scene for an image without injected objects. swath: the campaign's swath of
  * the image, or NULL. side: wanted side of a recording; 0: as swath or scene say. patch: NULL for
  * the whole image, where the altitude does not count. */
@@ -179,6 +199,10 @@ static sonject_status describe_image(struct sonject_campaign *campaign, const ch
     char ends[GREY_TEXT];
     memset(facts, 0, sizeof *facts);
     const struct swath_plan *swath = swath_of_image(&campaign->campaign, image, side);
+    if (swath && has_other_array(&campaign->campaign, swath))
+        return input_failure(campaign->report, image,
+                             "has several arrays that are swaths of the campaign, and contacts do "
+                             "not say which: save each array as a file of its own");
     CHECK(read_image_scene(campaign, image, swath, side, NULL, false, false, &scene));
     sonject_status status =
         swath_file_open_array(campaign->report, image, scene.channel, scene.array, &file);

@@ -202,6 +202,20 @@ def test_an_image_that_tells_no_ranges_is_told(sonject, folder, image):
     assert done.stderr.count(note) == (image == "tile.tif") and done.stderr.count("no swath") == (image == "tile.tif")
 
 
+def test_contacts_of_a_file_of_several_swaths_are_refused(sonject, folder):
+    """Contacts in one array used to be measured in the other."""
+    from scipy.io import savemat
+
+    savemat(folder / "line.mat", {f"side_{number}": images.read_tiff(folder / f"seabed_{number}.tif") for number in (1, 2)})
+    swaths = "swaths: [{path: line.mat, set: {input.array: side_1}}, {path: line.mat, set: {input.array: side_2}}]"
+    start = (folder / "start.yaml").read_text()
+    (folder / "start.yaml").write_text(re.sub("swaths: .*", swaths, start))
+    (folder / "contacts.csv").write_text("image,row,column,rows,columns\n" + "".join(
+        f"line.mat,{22 * row},5,9,20\n" for row in range(12)))
+    assert_refused(sonject("fit", "start.yaml", "contacts.csv", "-o", "fitted.yaml", "--quiet"), 3,
+                   "line.mat: has several arrays that are swaths of the campaign, and contacts do not say which: save")
+
+
 def test_a_byte_order_mark_is_not_in_the_fitted_file(sonject, folder):
     """The comment goes before the first key, and a mark may only begin a file."""
     contacts = "".join(f"seabed_1.tif,{20 + 9 * i},5,9,20\n" for i in range(12))
