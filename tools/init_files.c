@@ -388,8 +388,17 @@ bool write_campaign(const struct interview *interview, const char *checked)
             FAINTEST_DB, USUAL_LEVEL_DB);
     add_name(file, "  - class: ", interview);
     fputs("\n    object: {", file);
-    add_target(file, interview, ", ");
-    fputs("}\n", file);
+    if (interview->options->target) {
+        add_target(file, interview, ", ");
+        fputs("}\n", file);
+    } else {
+        fputs("shape: cylinder, material: steel}\n"
+              "    draw: # put your targets' sizes here, or let sonject fit find those of your "
+              "contacts\n"
+              "      length: {log_uniform: [1.2 m, 1.9 m]}\n"
+              "      diameter: {log_uniform: [0.4 m, 0.6 m]}\n",
+              file);
+    }
     add_clutter(file, checked);
     return finish(file, part, interview->campaign);
 }

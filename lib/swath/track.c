@@ -12,7 +12,8 @@
 #define EQUATOR_RADIUS_M 6378137.0
 #define ECCENTRICITY_2   6.69437999014e-3 /* squared eccentricity of WGS 84 */
 #define HIGHEST_LATITUDE 89.9 /* degrees; nearer to a pole, east and west mean nothing */
-#define COURSE_ROWS      25.0 /* rows on either side over which a course is measured */
+#define COURSE_ROWS      25.0 /* least rows on either side over which a course is measured */
+#define COURSE_M         20.0 /* least way over which a course is measured */
 
 /* Returns false for a ping that the recorder left empty or had no navigation for. */
 static bool ping_has_position(const struct recorded_ping *ping)
@@ -203,16 +204,26 @@ static void position_at(const struct track *track, double row, double *x, double
     *y = fixes[low].y + share * (fixes[high].y - fixes[low].y);
 }
 
+/* Finds the course about a row. Returns false if the fixes tell none. Positions are rounded, some
+ * to 0.2 m, so the way that is measured must be long enough for its direction. It lies between the
+ * first and the last fix. */
 static bool course_at(const struct track *track, double row, double *heading)
 {
-    double x0, y0, x1, y1, x_m, y_m;
-    position_at(track, fmax(0.0, row - COURSE_ROWS), &x0, &y0);
-    position_at(track, fmin((double)track->rows - 1.0, row + COURSE_ROWS), &x1, &y1);
-    unit_sizes(track->is_geographic, 0.5 * (y0 + y1), &x_m, &y_m);
-    const double east = step_in_x(track, x0, x1) * x_m;
-    const double north = (y1 - y0) * y_m;
-    *heading = atan2(east, north);
-    return east != 0.0 || north != 0.0;
+    const double first = track->fixes[0].row;
+    const double last = track->fixes[track->fix_count - 1].row;
+    for (double reach = COURSE_ROWS;; reach *= 2.0) {
+        double x0, y0, x1, y1, x_m, y_m;
+        const double from = fmax(first, fmin(row - reach, last - 2.0 * reach));
+        const double to = fmin(last, from + 2.0 * reach);
+        position_at(track, from, &x0, &y0);
+        position_at(track, to, &x1, &y1);
+        unit_sizes(track->is_geographic, 0.5 * (y0 + y1), &x_m, &y_m);
+        const double east = step_in_x(track, x0, x1) * x_m;
+        const double north = (y1 - y0) * y_m;
+        *heading = atan2(east, north);
+        if (hypot(east, north) >= COURSE_M || to - from >= last - first)
+            return east != 0.0 || north != 0.0;
+    }
 }
 
 /* Interpolates the headings of the rows on both sides, the short way round; rad. */

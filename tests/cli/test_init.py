@@ -62,6 +62,15 @@ def test_complex_pixels_make_a_scene(sonject, tmp_path):
     assert numpy.load(tmp_path / "out" / "image.npy").dtype == numpy.complex64
 
 
+def test_a_campaign_draws_the_sizes_that_a_fit_moves(sonject, image):
+    start(sonject, "swath.npy", "--campaign")
+    sonject.done("campaign", "swath_campaign.yaml", "-o", "set", "--set", "images=6", "--set", "empty=0", "--set", "clutter.alone=0")
+    truths = [json.loads(path.read_text())["objects"][0] for path in (image.parent / "set" / "all" / "truth").glob("*.json")]
+    for size, (least, most) in {"length_m": (1.2, 1.9), "body_height_m": (0.4, 0.6)}.items():
+        sizes = {truth[size] for truth in truths}
+        assert len(sizes) == 6 and least <= min(sizes) < max(sizes) <= most
+
+
 @pytest.mark.parametrize("bits", [None, 16])
 def test_detectors_get_images_of_8_bits(sonject, tmp_path, bits):
     """The seabed, 35 dB over black, is neither black nor white."""

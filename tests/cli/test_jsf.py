@@ -76,6 +76,25 @@ def test_what_is_not_valid_is_not_there(sonject, tmp_path, sides):
         1000.0 + 0.06 * found["row"] - 0.8 * found["ground_range_m"], abs=0.01)
 
 
+@pytest.mark.parametrize("row", [40, 200, 395])
+def test_courses_bear_rounded_positions(sonject, tmp_path, row):
+    """Pings 5 cm apart are placed to 185 mm, 1/10000 of a minute of arc."""
+    line = numpy.random.default_rng(2).integers(1, 60000, (400, COLUMNS))
+    positions = [(185 * round(30 * ping / 185), 185 * round(40 * ping / 185)) for ping in range(400)]
+    (tmp_path / "line.jsf").write_bytes(b"".join(
+        recordings.jsf_ping(samples.astype("<u2"), 0, position=(1e6 + x, 2e6 + y), number=ping)
+        for ping, (samples, (x, y)) in enumerate(zip(line, positions))))
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\ninput: {path: line.jsf, channel: port, geometry: from_file}\n"
+        "sonar: {frequency: 60 kHz, bandwidth: 5 kHz, altitude: from_file}\n"
+        f"objects: [{{shape: sphere, diameter: 0.5 m, position: {{row: {row}, column: 150}}}}]\n")
+    sonject.done("run", "scene.yaml", "-o", "out")
+    found = json.loads((tmp_path / "out" / "truth.json").read_text())["objects"][0]
+    range_m = found["ground_range_m"]
+    assert found["position"]["easting_m"] == pytest.approx(1000 + 0.03 * row - 0.8 * range_m, abs=0.01 * range_m + 0.1)
+    assert found["position"]["northing_m"] == pytest.approx(2000 + 0.04 * row + 0.6 * range_m, abs=0.01 * range_m + 0.1)
+
+
 def test_long_pings_have_more_bits(sonject, tmp_path):
     line = numpy.arange(70000, dtype=numpy.uint32) % 60000
     (tmp_path / "line.jsf").write_bytes(b"".join(one(line + row) for row in range(2)))
