@@ -9,10 +9,9 @@
 
 /* Returns the groups of spheres, which lie behind the sphere_records. Behind them lie the groups of
  * the spheres around groups. Unused slots of a group have radius 0. */
-FUNCTION GLOBAL const struct sphere_group *groups_of(GLOBAL const struct chain_record *chains,
-                                                     GLOBAL const struct sphere_record *spheres)
+FUNCTION GLOBAL const struct sphere_group *groups_of(const struct trace *trace)
 {
-    return (GLOBAL const struct sphere_group *)(spheres + chains->spheres);
+    return (GLOBAL const struct sphere_group *)(trace->spheres + trace->chains->spheres);
 }
 
 /* The probabilities by which rays choose their spheres. */
@@ -67,19 +66,18 @@ FUNCTION void weigh_group(const struct target_choice *choice,
 }
 
 /* Sums the openings one after the other, whatever the width. */
-FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
-                           GLOBAL const struct sphere_record *spheres, struct target_choice *choice)
+FUNCTION void begin_choice(const struct trace *trace, struct target_choice *choice)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     float sum = 0.0f;
-    for (int group = 0; group < chains->groups; group++) {
+    for (int group = 0; group < trace->chains->groups; group++) {
         float weights[SPHERES_OF_GROUP];
         choice->before[group] = sum;
         weigh_group(choice, &groups[group], weights);
         for (int slot = 0; slot < SPHERES_OF_GROUP; slot++)
             sum += weights[slot];
     }
-    choice->before[chains->groups] = sum;
+    choice->before[trace->chains->groups] = sum;
 }
 
 /* The spheres that lanes choose, and the rest 0...1 of each lane's uniform deviate. */
@@ -119,13 +117,12 @@ FUNCTION void sample_sphere(const struct target_choice *choice,
 
 /* Chooses spheres by the choice that all lanes share. If that is 0, each lane chooses for itself
  * and leaves its choice in own[lane]. */
-FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record *chains,
-                                               GLOBAL const struct sphere_record *spheres,
+FUNCTION struct sampled_spheres sample_spheres(const struct trace *trace,
                                                const struct target_choice *shared,
                                                struct target_choice *own, struct vector3 point,
                                                vfloat uniform, mask is_wanted)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     float from[3][WIDTH], uniforms[WIDTH];
     float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
     store_vector3(point, from);
@@ -143,11 +140,12 @@ FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record 
             own[lane].y = from[1][lane];
             own[lane].z = from[2][lane];
             own[lane].square_blur = 0.0f;
-            begin_choice(chains, spheres, &own[lane]);
+            begin_choice(trace, &own[lane]);
             choice = &own[lane];
         }
-        sample_sphere(choice, groups, chains->groups,
-                      uniforms[lane] * choice->before[chains->groups], &group, &slot, &rest[lane]);
+        sample_sphere(choice, groups, trace->chains->groups,
+                      uniforms[lane] * choice->before[trace->chains->groups], &group, &slot,
+                      &rest[lane]);
         x[lane] = groups[group].centre_x[slot];
         y[lane] = groups[group].centre_y[slot];
         z[lane] = groups[group].centre_z[slot];
@@ -243,13 +241,12 @@ struct rays_lanes {
     float point[3][WIDTH], direction[3][WIDTH];
 };
 
-FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
-                                GLOBAL const struct sphere_record *spheres,
-                                const struct target_choice *shared, const struct target_choice *own,
-                                struct vector3 point, struct vector3 direction, mask is_wanted,
-                                vfloat *by_solid_angle, vfloat *brdf_share)
+FUNCTION void densities_towards(const struct trace *trace, const struct target_choice *shared,
+                                const struct target_choice *own, struct vector3 point,
+                                struct vector3 direction, mask is_wanted, vfloat *by_solid_angle,
+                                vfloat *brdf_share)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     struct rays_lanes lanes;
     const struct rays_lanes *rays = &lanes;
     float cones[WIDTH], shares[WIDTH];
@@ -260,7 +257,7 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
     for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
         const int lane = lowest_bit(left);
         const struct target_density density =
-            single_density(chains, groups, shared ? shared : &own[lane],
+            single_density(trace->chains, groups, shared ? shared : &own[lane],
                            splat_vector3(rays->point, lane), splat_vector3(rays->direction, lane));
         cones[lane] = density.by_solid_angle;
         shares[lane] = density.brdf_share;
