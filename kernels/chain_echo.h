@@ -17,11 +17,8 @@ struct source_path {
 /* Returns the way from a point to the receiver at -reference_range * central direction and x. */
 FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, vfloat x)
 {
-    struct vector3 way;
-    way.x = x - point.x;
-    way.y = -fan->reference_range * fan->cosine_depression - point.y;
-    way.z = fan->reference_range * fan->sine_depression - point.z;
-    return way;
+    return vector3_of(x - point.x, -fan->reference_range * fan->cosine_depression - point.y,
+                      fan->reference_range * fan->sine_depression - point.z);
 }
 
 /* Returns the first leg less the reference range. In focused columns the receiver is not broadside
@@ -46,9 +43,7 @@ FUNCTION struct source_path straight_path(struct vector3 to)
     way.path = SQUARE_ROOT(dot3(to, to));
     way.spreading = 1.0f / (way.path * way.path);
     const vfloat inverse = 1.0f / way.path;
-    way.direction.x = to.x * inverse;
-    way.direction.y = to.y * inverse;
-    way.direction.z = to.z * inverse;
+    way.direction = scaled3(to, inverse);
     way.range = SPLAT(0.0f);
     return way;
 }
@@ -96,9 +91,9 @@ FUNCTION struct source_path path_through_layers(const struct trace *trace,
         (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
     struct source_path way;
     way.path = path;
-    way.direction.x = level * off / ground;
-    way.direction.y = -level * broadside / ground;
-    way.direction.z = (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path;
+    way.direction =
+        vector3_of(level * off / ground, -level * broadside / ground,
+                   (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path);
     way.spreading = ray.spreading / (ground * ray.wavefront);
     way.range =
         0.5f * (first_leg(chain, receiver_x) + chain->length + ray.range + (path - ray.wavefront));

@@ -56,7 +56,6 @@ FUNCTION struct chain_hit hit_of_ray(const struct trace *trace, enum wanted_face
                                      const struct nearest_hit *nearest, vfloat to_seabed,
                                      mask is_ray)
 {
-    const struct fan_record *fan = &trace->fan;
     const mask on_object = MASK_OF(nearest->distance < to_seabed);
     struct chain_hit hit;
     hit.distance = smaller(nearest->distance, to_seabed);
@@ -68,11 +67,10 @@ FUNCTION struct chain_hit hit_of_ray(const struct trace *trace, enum wanted_face
     struct surface_face face;
     face.normal = seabed_normal(trace, hit.point, direction);
 #if HAS_MESHES
-    face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
+    face.lift = zero3();
 #endif
     hit.left_behind = VINT_OF(SPLAT(-1.0f));
-    for (int i = surface_after(-1, fan->objects, hit.surface, hit.is_hit); i < fan->objects;
-         i = surface_after(i, fan->objects, hit.surface, hit.is_hit)) {
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, hit.surface, hit.is_hit) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
             continue;
@@ -106,10 +104,8 @@ FUNCTION struct chain_hit find_hit_on(const struct trace *trace, struct vector3 
                                       struct vector3 direction, float minimum, vint object,
                                       mask is_ray)
 {
-    const struct fan_record *fan = &trace->fan;
     struct nearest_hit nearest = {SPLAT(FAR_AWAY), object};
-    for (int i = surface_after(-1, fan->objects, object, is_ray); i < fan->objects;
-         i = surface_after(i, fan->objects, object, is_ray)) {
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, object, is_ray) {
         const mask here = is_ray & MASK_OF(object == i);
         if (ANY(here))
             nearest.distance =
@@ -152,11 +148,9 @@ FUNCTION vfloat fouling_at(GLOBAL const struct object_record *objects, int i,
 FUNCTION vfloat scattering_at(const struct trace *trace, const struct chain_hit *hit,
                               struct vector3 out)
 {
-    const struct fan_record *fan = &trace->fan;
     vfloat scattering = SPLAT(0.0f);
-    const int before = first_surface_number(trace->chains) - 1;
-    for (int i = surface_after(before, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
-         i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
+    FOR_SURFACES_MET (i, first_surface_number(trace->chains), trace->fan.objects, hit->surface,
+                      hit->is_hit) {
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (ANY(here))
             scattering =

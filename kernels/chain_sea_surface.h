@@ -16,12 +16,9 @@ FUNCTION void meet_sea_surface(GLOBAL const struct chain_record *chains, struct 
     const mask is_first = goes_up & (~hit->is_hit | MASK_OF(distance < hit->distance));
     hit->distance = SELECT(is_first, distance, hit->distance);
     const struct vector3 point = along3(start, direction, hit->distance);
-    hit->point.x = SELECT(is_first, point.x, hit->point.x);
-    hit->point.y = SELECT(is_first, point.y, hit->point.y);
-    hit->point.z = SELECT(is_first, SPLAT(height), hit->point.z);
-    hit->normal.x = SELECT(is_first, SPLAT(0.0f), hit->normal.x);
-    hit->normal.y = SELECT(is_first, SPLAT(0.0f), hit->normal.y);
-    hit->normal.z = SELECT(is_first, SPLAT(-1.0f), hit->normal.z);
+    hit->point = choose3(is_first, vector3_of(point.x, point.y, SPLAT(height)), hit->point);
+    hit->normal =
+        choose3(is_first, vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(-1.0f)), hit->normal);
     hit->surface = SELECT(is_first, VINT_OF(SPLAT((float)SEA_SURFACE)), hit->surface);
     hit->left_behind = SELECT(is_first, VINT_OF(SPLAT(-1.0f)), hit->left_behind);
     hit->is_hit = hit->is_hit | is_first;
@@ -56,10 +53,8 @@ FUNCTION struct source_path path_to_image(const struct trace *trace, const struc
     const vfloat source_y = up * fan->sine_depression - r * fan->cosine_depression;
     const vfloat source_z = up * fan->cosine_depression + r * fan->sine_depression;
     const vfloat image_z = 2.0f * surface - source_z;
-    struct vector3 to;
-    to.x = receiver_x + aside - point.x;
-    to.y = source_y - point.y;
-    to.z = image_z - point.z;
+    const struct vector3 to =
+        vector3_of(receiver_x + aside - point.x, source_y - point.y, image_z - point.z);
     struct source_path way = straight_path(to);
     const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z -
                            2.0f * (source_y * point.y + image_z * point.z) + up * up +

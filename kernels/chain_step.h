@@ -82,10 +82,7 @@ NOINLINE struct chain_step step_among_many(const struct trace *trace,
     struct target_choice own[WIDTH];
     const struct sampled_spheres chosen =
         sample_spheres(trace, targets, own, hit->point, cone_choice, is_here);
-    struct vector3 way;
-    way.x = chosen.centre.x - hit->point.x;
-    way.y = chosen.centre.y - hit->point.y;
-    way.z = chosen.centre.z - hit->point.z;
+    const struct vector3 way = minus3(chosen.centre, hit->point);
     mask is_outside;
     const vfloat opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
     struct vector3 direction =
@@ -182,10 +179,8 @@ FUNCTION struct chain_step step_from_surface(const struct trace *trace,
 FUNCTION vfloat rough_density_at(const struct trace *trace, const struct chain_hit *hit,
                                  struct vector3 direction)
 {
-    const struct fan_record *fan = &trace->fan;
     vfloat density = SPLAT(0.0f);
-    for (int i = surface_after(-1, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
-         i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, hit->surface, hit->is_hit) {
         GLOBAL const struct surface_record *surface = &trace->objects[i].surface;
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (!ANY(here) || !has_rough_part(surface))
@@ -204,7 +199,6 @@ FUNCTION vfloat rough_density_at(const struct trace *trace, const struct chain_h
 FUNCTION struct chain_step next_step(const struct trace *trace, int order,
                                      const struct chain *chain, RECORD_WORD draw)
 {
-    const struct fan_record *fan = &trace->fan;
     vfloat u, v, choice;
     three_uniforms(chain->key, chain->number, draw, &u, &v, &choice);
     if (order == 1)
@@ -214,9 +208,8 @@ FUNCTION struct chain_step next_step(const struct trace *trace, int order,
     step.direction = hit->back;
     step.weight = step.density = SPLAT(0.0f);
     step.is_specular = MASK_OF(choice < -1.0f);
-    const int before = first_surface_number(trace->chains) - 1;
-    for (int i = surface_after(before, fan->objects, hit->surface, chain->is_alive);
-         i < fan->objects; i = surface_after(i, fan->objects, hit->surface, chain->is_alive)) {
+    FOR_SURFACES_MET (i, first_surface_number(trace->chains), trace->fan.objects, hit->surface,
+                      chain->is_alive) {
         const mask here = chain->is_alive & MASK_OF(hit->surface == i);
         if (!ANY(here))
             continue;

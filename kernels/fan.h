@@ -31,12 +31,10 @@ FUNCTION struct fan_ray fan_ray_at(const struct trace *trace, vfloat x, vfloat e
     sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
     cosine = SQUARE_ROOT(1.0f - sine * sine);
     struct fan_ray ray;
-    ray.direction.x = SPLAT(0.0f);
-    ray.direction.y = cosine * fan->cosine_depression + sine * fan->sine_depression;
-    ray.direction.z = sine * fan->cosine_depression - cosine * fan->sine_depression;
-    ray.upward.x = SPLAT(0.0f);
-    ray.upward.y = -ray.direction.z;
-    ray.upward.z = ray.direction.y;
+    ray.direction =
+        vector3_of(SPLAT(0.0f), cosine * fan->cosine_depression + sine * fan->sine_depression,
+                   sine * fan->cosine_depression - cosine * fan->sine_depression);
+    ray.upward = vector3_of(SPLAT(0.0f), -ray.direction.z, ray.direction.y);
     vfloat offset = fan->reference_range * sine;
     ray.range_at_closest = -offset * sine / (1.0f + cosine);
     ray.wavefront = fan->reference_range + ray.range_at_closest;
@@ -50,9 +48,7 @@ FUNCTION struct fan_ray fan_ray_at(const struct trace *trace, vfloat x, vfloat e
         ray.wavefront = bent.wavefront;
         ray.spreading = bent.spreading;
     }
-    ray.closest.x = x;
-    ray.closest.y = offset * ray.upward.y;
-    ray.closest.z = offset * ray.upward.z;
+    ray.closest = vector3_of(x, offset * ray.upward.y, offset * ray.upward.z);
     return ray;
 }
 

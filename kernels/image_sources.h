@@ -89,9 +89,7 @@ FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_
     const struct ray_to_point ray = find_ray_to(source->table, pieces, source->cosine_depression,
                                                 source->sine_depression, hit.y, hit.z);
     struct line_from_source line;
-    line.direction.x = SPLAT(0.0f);
-    line.direction.y = ray.directions.away_y;
-    line.direction.z = ray.directions.away_z;
+    line.direction = vector3_of(SPLAT(0.0f), ray.directions.away_y, ray.directions.away_z);
     line.wavefront = ray.wavefront;
     line.excess = ray.range;
     line.spreading = ray.spreading;
@@ -111,9 +109,9 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
     line.wavefront = SQUARE_ROOT(range * range + change);
     line.excess = change / (line.wavefront + range);
     line.spreading = SPLAT(1.0f);
-    line.direction.x = SPLAT(0.0f);
-    line.direction.y = (range * source->cosine_depression + hit.y) / line.wavefront;
-    line.direction.z = (hit.z - range * source->sine_depression) / line.wavefront;
+    line.direction =
+        vector3_of(SPLAT(0.0f), (range * source->cosine_depression + hit.y) / line.wavefront,
+                   (hit.z - range * source->sine_depression) / line.wavefront);
     return line;
 }
 

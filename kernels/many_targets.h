@@ -31,9 +31,9 @@ FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group
                                          struct vector3 point)
 {
     struct seen_spheres seen;
-    seen.way.x = LOAD_VFLOAT(group->centre_x + slot) - point.x;
-    seen.way.y = LOAD_VFLOAT(group->centre_y + slot) - point.y;
-    seen.way.z = LOAD_VFLOAT(group->centre_z + slot) - point.z;
+    seen.way = vector3_of(LOAD_VFLOAT(group->centre_x + slot) - point.x,
+                          LOAD_VFLOAT(group->centre_y + slot) - point.y,
+                          LOAD_VFLOAT(group->centre_z + slot) - point.z);
     const vfloat radius = LOAD_VFLOAT(group->radius + slot);
     seen.square_distance = dot3(seen.way, seen.way);
     seen.square_radius = radius * radius;
@@ -44,10 +44,7 @@ FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group
 FUNCTION vfloat choice_weight(const struct target_choice *choice,
                               GLOBAL const struct sphere_group *group, int slot)
 {
-    struct vector3 from;
-    from.x = SPLAT(choice->x);
-    from.y = SPLAT(choice->y);
-    from.z = SPLAT(choice->z);
+    const struct vector3 from = vector3_of(SPLAT(choice->x), SPLAT(choice->y), SPLAT(choice->z));
     const struct seen_spheres seen = see_spheres(group, slot, from);
     mask is_outside;
     const vfloat opening =
@@ -152,9 +149,7 @@ FUNCTION struct sampled_spheres sample_spheres(const struct trace *trace,
         radius[lane] = groups[group].radius[slot];
     }
     struct sampled_spheres chosen;
-    chosen.centre.x = LOAD_VFLOAT(x);
-    chosen.centre.y = LOAD_VFLOAT(y);
-    chosen.centre.z = LOAD_VFLOAT(z);
+    chosen.centre = vector3_of(LOAD_VFLOAT(x), LOAD_VFLOAT(y), LOAD_VFLOAT(z));
     chosen.radius = LOAD_VFLOAT(radius);
     chosen.rest = LOAD_VFLOAT(rest);
     return chosen;

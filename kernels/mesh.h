@@ -37,11 +37,7 @@ struct mesh_stack {
 
 FUNCTION struct vector3 splat_point(float x, float y, float z)
 {
-    struct vector3 point;
-    point.x = SPLAT(x);
-    point.y = SPLAT(y);
-    point.z = SPLAT(z);
-    return point;
+    return vector3_of(SPLAT(x), SPLAT(y), SPLAT(z));
 }
 
 /* Returns the distance at which each ray enters a box that is the same for all of them. */
@@ -52,12 +48,10 @@ FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_headi
     struct vector3 first, last;
     if (!heading->is_common)
         return box_entry(ray, lower, upper, maximum);
-    first.x = downward[0] ? upper.x : lower.x;
-    first.y = downward[1] ? upper.y : lower.y;
-    first.z = downward[2] ? upper.z : lower.z;
-    last.x = downward[0] ? lower.x : upper.x;
-    last.y = downward[1] ? lower.y : upper.y;
-    last.z = downward[2] ? lower.z : upper.z;
+    first = vector3_of(downward[0] ? upper.x : lower.x, downward[1] ? upper.y : lower.y,
+                       downward[2] ? upper.z : lower.z);
+    last = vector3_of(downward[0] ? lower.x : upper.x, downward[1] ? lower.y : upper.y,
+                      downward[2] ? lower.z : upper.z);
     return entry_by_faces(ray, first, last, maximum);
 }
 

@@ -24,11 +24,8 @@ FUNCTION vfloat one_over_component(vfloat component)
 
 FUNCTION struct vector3 one_over_components(struct vector3 direction)
 {
-    struct vector3 inverse;
-    inverse.x = one_over_component(direction.x);
-    inverse.y = one_over_component(direction.y);
-    inverse.z = one_over_component(direction.z);
-    return inverse;
+    return vector3_of(one_over_component(direction.x), one_over_component(direction.y),
+                      one_over_component(direction.z));
 }
 
 FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vfloat minimum,
@@ -39,9 +36,7 @@ FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direct
     ray.direction = direction;
     ray.inverse = one_over_components(direction);
     tangents3(direction, &ray.across, &ray.upward);
-    ray.seen.x = dot3(point, ray.across);
-    ray.seen.y = dot3(point, ray.upward);
-    ray.seen.z = dot3(point, direction);
+    ray.seen = vector3_of(dot3(point, ray.across), dot3(point, ray.upward), dot3(point, direction));
     ray.minimum = minimum;
     ray.padding = padding;
     return ray;
@@ -156,22 +151,18 @@ FUNCTION struct mesh_corners leaf_corners(GLOBAL const struct mesh_leaf *leaf, i
 /* Returns a point as seen along the ray: across, upward and along it. */
 FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 point)
 {
-    struct vector3 seen;
-    seen.x = dot3(point, ray->across) - ray->seen.x;
-    seen.y = dot3(point, ray->upward) - ray->seen.y;
-    seen.z = dot3(point, ray->direction) - ray->seen.z;
-    return seen;
+    return vector3_of(dot3(point, ray->across) - ray->seen.x,
+                      dot3(point, ray->upward) - ray->seen.y,
+                      dot3(point, ray->direction) - ray->seen.z);
 }
 
 /* Returns the functions of the edges opposite to a, b and c, for corners as seen along the ray.
  * Divided by their sum they are the corners' shares of the hit. */
 FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
 {
-    struct vector3 edges;
-    edges.x = seen->c.x * seen->b.y - seen->c.y * seen->b.x;
-    edges.y = seen->a.x * seen->c.y - seen->a.y * seen->c.x;
-    edges.z = seen->b.x * seen->a.y - seen->b.y * seen->a.x;
-    return edges;
+    return vector3_of(seen->c.x * seen->b.y - seen->c.y * seen->b.x,
+                      seen->a.x * seen->c.y - seen->a.y * seen->c.x,
+                      seen->b.x * seen->a.y - seen->b.y * seen->a.x);
 }
 
 /* Returns where the ray's line is inside the triangle's own box, padded. */
@@ -180,12 +171,12 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
 {
     const struct vector3 a = corners->a, b = corners->b, c = corners->c;
     struct vector3 lower, upper;
-    lower.x = smaller(smaller(a.x, b.x), c.x) - ray->padding;
-    lower.y = smaller(smaller(a.y, b.y), c.y) - ray->padding;
-    lower.z = smaller(smaller(a.z, b.z), c.z) - ray->padding;
-    upper.x = larger(larger(a.x, b.x), c.x) + ray->padding;
-    upper.y = larger(larger(a.y, b.y), c.y) + ray->padding;
-    upper.z = larger(larger(a.z, b.z), c.z) + ray->padding;
+    lower = vector3_of(smaller(smaller(a.x, b.x), c.x) - ray->padding,
+                       smaller(smaller(a.y, b.y), c.y) - ray->padding,
+                       smaller(smaller(a.z, b.z), c.z) - ray->padding);
+    upper = vector3_of(larger(larger(a.x, b.x), c.x) + ray->padding,
+                       larger(larger(a.y, b.y), c.y) + ray->padding,
+                       larger(larger(a.z, b.z), c.z) + ray->padding);
     return interval_in_box(ray, lower, upper);
 }
 

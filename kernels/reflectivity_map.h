@@ -62,13 +62,12 @@ FUNCTION vfloat range_in_plan(const struct trace *trace, struct vector3 point)
 /* Returns the map's value at a chain's hits on the seabed if the map scales scattering, else 1. */
 FUNCTION vfloat map_factor(const struct trace *trace, const struct chain_hit *hit)
 {
-    const struct fan_record *fan = &trace->fan;
     const mask on_seabed = hit->is_hit & MASK_OF(hit->surface == -1);
     if (!trace->chains->forward_is_map || !ANY(on_seabed))
         return SPLAT(1.0f);
     const vfloat range =
         has_relief(trace) ? range_in_plan(trace, hit->point) : broadside_range(trace, hit->point);
-    const struct map_place place = place_in_map(fan, hit->point.x, range);
+    const struct map_place place = place_in_map(&trace->fan, hit->point.x, range);
     float rows[WIDTH], columns[WIDTH], values[WIDTH];
     STORE_VFLOAT(place.row, rows);
     STORE_VFLOAT(place.column, columns);

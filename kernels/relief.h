@@ -90,18 +90,11 @@ NOINLINE struct vector3 relief_normal(const struct trace *trace, struct vector3 
     const vfloat along = LOAD_VFLOAT(slopes[0]);
     const vfloat across = LOAD_VFLOAT(slopes[1]);
     const vfloat up = 1.0f / SQUARE_ROOT(along * along + across * across + 1.0f);
-    struct vector3 normal;
-    normal.x = -along * up;
-    normal.y = -across * up;
-    normal.z = up;
+    const struct vector3 normal = vector3_of(-along * up, -across * up, up);
     const vfloat lack = larger(RELIEF_LEAST_COSINE + dot3(normal, direction), SPLAT(0.0f));
     const struct vector3 bent = along3(normal, direction, -lack);
     const vfloat length = SQUARE_ROOT(dot3(bent, bent));
-    struct vector3 unit;
-    unit.x = bent.x / length;
-    unit.y = bent.y / length;
-    unit.z = bent.z / length;
-    return choose3(MASK_OF(lack > 0.0f), unit, normal);
+    return choose3(MASK_OF(lack > 0.0f), divided3(bent, length), normal);
 }
 
 #endif

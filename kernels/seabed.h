@@ -38,11 +38,7 @@ FUNCTION struct vector3 seabed_normal(const struct trace *trace, struct vector3 
     (void)trace;
     (void)point;
     (void)direction;
-    struct vector3 up;
-    up.x = SPLAT(0.0f);
-    up.y = SPLAT(0.0f);
-    up.z = SPLAT(1.0f);
-    return up;
+    return vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(1.0f));
 }
 
 /* Returns where no relief lies between two points. Both points are above the mean plane. */

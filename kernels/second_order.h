@@ -128,18 +128,13 @@ FUNCTION vfloat density_of_samples(const struct trace *trace, vfloat weight,
 FUNCTION struct chain_hit seabed_below(const struct trace *trace, vfloat x, vfloat y,
                                        mask is_wanted)
 {
-    const struct fan_record *fan = &trace->fan;
     struct chain_hit hit;
-    hit.point.x = x;
-    hit.point.y = y;
-    hit.point.z = SPLAT(fan->seabed_height);
+    hit.point = vector3_of(x, y, SPLAT(trace->fan.seabed_height));
 #if HAS_RELIEF
     if (has_relief(trace)) { /* rays start little above it, so that heights keep their digits */
         struct vector3 above = hit.point;
-        struct vector3 down;
+        const struct vector3 down = vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(-1.0f));
         above.z = above.z + (relief_of(trace).grid->highest + 0.01f);
-        down.x = down.y = SPLAT(0.0f);
-        down.z = SPLAT(-1.0f);
         hit.point.z = above.z - seabed_distance(trace, above, down, SPLAT(0.0f), is_wanted);
     }
 #endif

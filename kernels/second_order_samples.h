@@ -221,14 +221,13 @@ FUNCTION void trace_facing(const struct trace *trace, const RECORD_WORD *shifts,
 /* Traces the share `segment` of a strip's samples. fan->rays tells their number. */
 NOINLINE void trace_second_order_strip(const struct trace *trace)
 {
-    const struct fan_record *fan = &trace->fan;
     RECORD_WORD shifts[SAMPLE_COORDINATES];
     struct waiting_samples followed, facing;
     draw_shifts(trace->key, shifts);
     followed.count = facing.count = 0;
     int is_over = 0;
     for (RECORD_WORD first = first_ray_of_item(trace); !is_over; first += ray_step(trace)) {
-        is_over = first >= fan->rays;
+        is_over = first >= trace->fan.rays;
         if (!is_over) {
             int numbers[WIDTH];
             for (int lane = 0; lane < WIDTH; lane++)

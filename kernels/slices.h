@@ -41,20 +41,16 @@ FUNCTION struct fan_ray ray_in_slice(const struct fan_record *fan,
     table.first_piece += table.pieces;
     const struct table_ray ranges = look_up_ray(table, slice, elevation);
     struct fan_ray ray;
-    ray.direction.x = SPLAT(0.0f);
-    ray.direction.y = straight->direction.y * slice->offset[1];
-    ray.direction.z = slope_in_slice(slice, straight);
-    ray.upward.x = SPLAT(0.0f);
-    ray.upward.y = -ray.direction.z;
-    ray.upward.z = ray.direction.y;
+    ray.direction = vector3_of(SPLAT(0.0f), straight->direction.y * slice->offset[1],
+                               slope_in_slice(slice, straight));
+    ray.upward = vector3_of(SPLAT(0.0f), -ray.direction.z, ray.direction.y);
     ray.turn = slice->offset[1] * straight->direction.z / ray.direction.z;
     ray.range_at_closest = ranges.offset;
     ray.range_per_metre = SPLAT(slice->offset[2]);
     ray.wavefront = bent.wavefront / ray.turn;
     ray.spreading = bent.spreading;
-    ray.closest.x = straight->closest.x;
-    ray.closest.y = bent.offset * ray.upward.y;
-    ray.closest.z = bent.offset * ray.upward.z;
+    ray.closest =
+        vector3_of(straight->closest.x, bent.offset * ray.upward.y, bent.offset * ray.upward.z);
     return ray;
 }
 

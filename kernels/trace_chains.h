@@ -264,9 +264,8 @@ FUNCTION void aim_choice(const struct trace *trace, RECORD_WORD first_ray,
 /* Follows the block of rays that begins with first_ray. */
 FUNCTION void trace_chain_block(const struct trace *trace, RECORD_WORD first_ray, float throughput)
 {
-    const struct fan_record *fan = &trace->fan;
     struct target_choice choice;
-    const int is_shared = trace->chains->groups > 0 && fan->only_object == -1;
+    const int is_shared = trace->chains->groups > 0 && trace->fan.only_object == -1;
     const RECORD_WORD count = rays_from(trace, first_ray, THIN_BLOCK);
     const RECORD_WORD first = GROUP_ITEM * WIDTH;
     for (RECORD_WORD ray = first; ray < count; ray += GROUP_WIDTH) {

@@ -28,9 +28,9 @@ FUNCTION struct return_path return_through_layers(GLOBAL const struct source_rec
         find_ray_to(source->table, pieces, source->cosine_depression, source->sine_depression,
                     hit.y + off * off / (ground + broadside), hit.z);
     struct return_path returned;
-    returned.direction.x = ray.directions.away_y * off / ground;
-    returned.direction.y = -ray.directions.away_y * broadside / ground;
-    returned.direction.z = -ray.directions.away_z;
+    returned.direction =
+        vector3_of(ray.directions.away_y * off / ground,
+                   -ray.directions.away_y * broadside / ground, -ray.directions.away_z);
     returned.length = ray.wavefront;
     returned.excess = ray.range;
     returned.spreading = SQUARE_ROOT(ray.spreading / (ground * ray.wavefront));
@@ -50,9 +50,9 @@ FUNCTION struct return_path return_path(GLOBAL const struct source_record *sourc
     returned.length = SQUARE_ROOT(range * range + change);
     returned.excess = change / (returned.length + range);
     returned.spreading = 1.0f / returned.length;
-    returned.direction.x = off * returned.spreading;
-    returned.direction.y = -(range * source->cosine_depression + hit.y) * returned.spreading;
-    returned.direction.z = (range * source->sine_depression - hit.z) * returned.spreading;
+    returned.direction = vector3_of(
+        off * returned.spreading, -(range * source->cosine_depression + hit.y) * returned.spreading,
+        (range * source->sine_depression - hit.z) * returned.spreading);
     return returned;
 }
 
@@ -107,13 +107,11 @@ FUNCTION void begin_multibounce(const struct trace *trace, const struct wavefron
         path->first_spreading = SQUARE_ROOT(ray->spreading / (ground * path->first_wavefront));
     }
     const vfloat inverse = 1.0f / path->first_wavefront;
-    path->tube.along.offset.x = SPLAT(1.0f);
-    path->tube.along.offset.y = path->tube.along.offset.z = SPLAT(0.0f);
-    path->tube.along.turn.x = path->tube.along.turn.y = path->tube.along.turn.z = SPLAT(0.0f);
+    path->tube.along.offset = vector3_of(SPLAT(1.0f), SPLAT(0.0f), SPLAT(0.0f));
+    path->tube.along.turn = zero3();
     path->tube.across.offset = ray->upward;
-    path->tube.across.turn.x = SPLAT(0.0f);
-    path->tube.across.turn.y = ray->upward.y * inverse;
-    path->tube.across.turn.z = ray->upward.z * inverse;
+    path->tube.across.turn =
+        vector3_of(SPLAT(0.0f), ray->upward.y * inverse, ray->upward.z * inverse);
 }
 
 /* Finds the coherent reflection of the surfaces where the paths are. Paths end on a surface without
@@ -122,12 +120,10 @@ FUNCTION void reflection_of_hit(const struct trace *trace, const struct chain_hi
                                 vfloat cosine, mask *is_alive, vfloat *real_part,
                                 vfloat *imaginary_part)
 {
-    const struct fan_record *fan = &trace->fan;
     *real_part = SPLAT(0.0f);
     *imaginary_part = SPLAT(0.0f);
     mask is_smooth = *is_alive & 0;
-    for (int i = surface_after(SEABED - 1, fan->objects, hit->surface, *is_alive); i < fan->objects;
-         i = surface_after(i, fan->objects, hit->surface, *is_alive)) {
+    FOR_SURFACES_MET (i, SEABED, trace->fan.objects, hit->surface, *is_alive) {
         GLOBAL const struct surface_record *surface =
             i < 0 ? &trace->multibounce->seabed : &trace->objects[i].surface;
         const mask here = *is_alive & MASK_OF(hit->surface == i);
@@ -155,15 +151,12 @@ FUNCTION void bounce_on(const struct trace *trace, struct multibounce_path *path
     const vfloat was_real = path->reflection_real;
     path->reflection_real = was_real * one_real - path->reflection_imaginary * one_imaginary;
     path->reflection_imaginary = was_real * one_imaginary + path->reflection_imaginary * one_real;
-    struct vector3 nothing;
-    nothing.x = nothing.y = nothing.z = SPLAT(0.0f);
     struct tube_side *sides[2];
     sides[0] = &path->tube.along;
     sides[1] = &path->tube.across;
     for (int i = 0; i < 2; i++) {
         const struct vector3 shift = offset_on_surface(sides[i], came, hit->normal, cosine);
-        reflect_side(sides[i], came, hit->normal, cosine,
-                     normal_change_at(trace->objects, trace->fan.objects, hit, shift));
+        reflect_side(sides[i], came, hit->normal, cosine, normal_change_at(trace, hit, shift));
     }
     const struct vector3 direction = reflected3(came, hit->normal);
     trace->outcome->queries += count_lanes(path->is_alive);
@@ -178,8 +171,8 @@ FUNCTION void bounce_on(const struct trace *trace, struct multibounce_path *path
     path->is_alive = next.is_hit & is_narrow(&path->tube);
     /* Paths that have ended stay finite. */
     for (int i = 0; i < 2; i++) {
-        sides[i]->offset = choose3(path->is_alive, sides[i]->offset, nothing);
-        sides[i]->turn = choose3(path->is_alive, sides[i]->turn, nothing);
+        sides[i]->offset = choose3(path->is_alive, sides[i]->offset, zero3());
+        sides[i]->turn = choose3(path->is_alive, sides[i]->turn, zero3());
     }
 }
 

@@ -39,10 +39,10 @@ FUNCTION struct connection connect_to_source(const struct trace *trace, const st
     const vfloat offset_up = (across - 0.5f) * fan->source_side;
     const vfloat square = offset_x * offset_x + offset_up * offset_up;
     const vfloat path = SQUARE_ROOT((r * r + square) - 2.0f * r * offset_x * squinted->sine);
-    struct vector3 way;
-    way.x = (offset_x - r * squinted->direction.x) / path;
-    way.y = (offset_up * ray->upward.y - r * squinted->direction.y) / path;
-    way.z = (offset_up * ray->upward.z - r * squinted->direction.z) / path;
+    const struct vector3 way =
+        vector3_of((offset_x - r * squinted->direction.x) / path,
+                   (offset_up * ray->upward.y - r * squinted->direction.y) / path,
+                   (offset_up * ray->upward.z - r * squinted->direction.z) / path);
     struct connection connection;
     connection.range = range + 0.5f * square / (path + r);
     connection.cosine = dot3(way, normal);
@@ -162,8 +162,7 @@ FUNCTION vfloat scattering_of_targets(const struct trace *trace, const struct fa
     const struct fan_record *fan = &trace->fan;
     vfloat scattering = SPLAT(0.0f);
     const int objects_end = ANY(on_object) ? fan->objects : 0;
-    for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
-         i = surface_after(i, objects_end, nearest.object, on_object)) {
+    FOR_SURFACES_MET (i, 0, objects_end, nearest.object, on_object) {
         const mask here = on_object & MASK_OF(nearest.object == i);
         if (!ANY(here))
             continue;

@@ -223,6 +223,12 @@ FUNCTION vfloat magnitude(vfloat value)
     return AS_VFLOAT(AS_VINT(value) & 0x7fffffff);
 }
 
+/* Returns -1 where the value is negative, else 1. */
+FUNCTION vfloat sign_of(vfloat value)
+{
+    return SELECT(MASK_OF(value < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+}
+
 /* Counts the lanes of the mask that are set. */
 FUNCTION RECORD_WORD count_lanes(mask m)
 {
