@@ -91,9 +91,8 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
     squinted.sine = smaller(larger(sine, SPLAT(-STEEPEST_SINE)), SPLAT(STEEPEST_SINE));
     const mask is_near = MASK_OF(squinted.sine == sine);
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
-    squinted.direction.x = squinted.sine;
-    squinted.direction.y = ray->direction.y * squinted.cosine;
-    squinted.direction.z = ray->direction.z * squinted.cosine;
+    squinted.direction = vector3_of(squinted.sine, ray->direction.y * squinted.cosine,
+                                    ray->direction.z * squinted.cosine);
     squinted.start = ray->closest;
     squinted.start.x = ray->closest.x + (fan->reference_range + ray->range_at_closest) *
                                             (squinted.sine / squinted.cosine);
@@ -138,9 +137,8 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     const vfloat anchor = smaller(plane_distance(fan, ray->closest, ray->direction),
                                   fan->aspects.end - ray->range_at_closest);
     squinted.start.x = ray->closest.x - anchor * (squinted.sine / squinted.cosine);
-    squinted.direction.x = squinted.sine;
-    squinted.direction.y = ray->direction.y * squinted.cosine;
-    squinted.direction.z = ray->direction.z * squinted.cosine;
+    squinted.direction = vector3_of(squinted.sine, ray->direction.y * squinted.cosine,
+                                    ray->direction.z * squinted.cosine);
     return squinted;
 }
 

@@ -81,14 +81,9 @@ struct microfacet {
 FUNCTION struct microfacet facet_between(struct vector3 one, struct vector3 other)
 {
     struct microfacet facet;
-    facet.normal.x = one.x + other.x;
-    facet.normal.y = one.y + other.y;
-    facet.normal.z = one.z + other.z;
+    facet.normal = vector3_of(one.x + other.x, one.y + other.y, one.z + other.z);
     const vfloat length = larger(SQUARE_ROOT(dot3(facet.normal, facet.normal)), SPLAT(2.0e-6f));
-    const vfloat inverse = 1.0f / length;
-    facet.normal.x = facet.normal.x * inverse;
-    facet.normal.y = facet.normal.y * inverse;
-    facet.normal.z = facet.normal.z * inverse;
+    facet.normal = scaled3(facet.normal, 1.0f / length);
     facet.half_angle = 0.5f * length;
     return facet;
 }
@@ -130,11 +125,7 @@ FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, 
     const struct vector3 facet =
         direction_about(normal, cosine, SQUARE_ROOT(square_slope) * cosine, v);
     const vfloat twice = 2.0f * dot3(back, facet);
-    struct vector3 reflected;
-    reflected.x = twice * facet.x - back.x;
-    reflected.y = twice * facet.y - back.y;
-    reflected.z = twice * facet.z - back.z;
-    return reflected;
+    return vector3_of(twice * facet.x - back.x, twice * facet.y - back.y, twice * facet.z - back.z);
 }
 
 #endif

@@ -17,11 +17,8 @@ struct source_path {
 /* Returns the way from a point to the receiver at -reference_range * central direction and x. */
 FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, vfloat x)
 {
-    struct vector3 way;
-    way.x = x - point.x;
-    way.y = -fan->reference_range * fan->cosine_depression - point.y;
-    way.z = fan->reference_range * fan->sine_depression - point.z;
-    return way;
+    return vector3_of(x - point.x, -fan->reference_range * fan->cosine_depression - point.y,
+                      fan->reference_range * fan->sine_depression - point.z);
 }
 
 /* Returns the first leg less the reference range. In focused columns the receiver is not broadside
@@ -46,9 +43,7 @@ FUNCTION struct source_path straight_path(struct vector3 to)
     way.path = SQUARE_ROOT(dot3(to, to));
     way.spreading = 1.0f / (way.path * way.path);
     const vfloat inverse = 1.0f / way.path;
-    way.direction.x = to.x * inverse;
-    way.direction.y = to.y * inverse;
-    way.direction.z = to.z * inverse;
+    way.direction = scaled3(to, inverse);
     way.range = SPLAT(0.0f);
     return way;
 }
@@ -78,17 +73,17 @@ FUNCTION struct source_path path_to_source(const struct fan_record *fan, const s
 
 /* Works as path_to_source, through layers. The ray is looked up in the upright plane of point and
  * source, then turned to where that plane stands. */
-FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
-                                                GLOBAL const struct ray_piece_record *pieces,
+FUNCTION struct source_path path_through_layers(const struct trace *trace,
                                                 const struct chain *chain, vfloat receiver_x,
                                                 vfloat aside, vfloat up)
 {
+    const struct fan_record *fan = &trace->fan;
     const struct vector3 point = chain->hit.point;
     const vfloat off = receiver_x + aside - point.x;
     const vfloat broadside = fan->table.ground_range + point.y;
     const vfloat ground = SQUARE_ROOT(broadside * broadside + off * off);
     const struct ray_to_point ray =
-        find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
+        find_ray_to(fan->table, trace->pieces, fan->cosine_depression, fan->sine_depression,
                     point.y + off * off / (ground + broadside), point.z);
     /* The source point lies `up` across the ray, at the distance of the wavefront's radius. */
     const vfloat path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
@@ -96,9 +91,9 @@ FUNCTION struct source_path path_through_layers(const struct fan_record *fan,
         (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
     struct source_path way;
     way.path = path;
-    way.direction.x = level * off / ground;
-    way.direction.y = -level * broadside / ground;
-    way.direction.z = (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path;
+    way.direction =
+        vector3_of(level * off / ground, -level * broadside / ground,
+                   (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path);
     way.spreading = ray.spreading / (ground * ray.wavefront);
     way.range =
         0.5f * (first_leg(chain, receiver_x) + chain->length + ray.range + (path - ray.wavefront));
@@ -126,11 +121,10 @@ FUNCTION vint strip_at(const struct fan_record *fan, vfloat x)
     return VINT_OF(smaller(larger(strip, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) + 1000000.5f) - 1000000;
 }
 
-FUNCTION void tally_chain_echo(const struct fan_record *fan,
-                               GLOBAL const struct chain_record *chains, GLOBAL TALLY *tallies,
-                               int order, const struct chain_echo *echo,
-                               struct outcome_record *outcome)
+FUNCTION void tally_chain_echo(const struct trace *trace, int order, const struct chain_echo *echo)
 {
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct chain_record *chains = trace->chains;
     const int plane = order - chains->first_order;
     /* Few lanes are heard, at random. They are listed first, without a branch to be predicted. */
     int heard[WIDTH];
@@ -145,15 +139,15 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
         const float dither = echo->dither[lane];
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
-        GLOBAL TALLY *lines = tallies + (LONG_INDEX)plane * chains->tally_strips * fan->bins;
+        GLOBAL TALLY *lines = trace->tallies + (LONG_INDEX)plane * chains->tally_strips * fan->bins;
         if (strip >= 0 && strip < chains->tally_strips)
             tally_shares(lines + (LONG_INDEX)strip * fan->bins, fan->bins, 1, echo->bin[lane],
-                         echo->later[lane], energy, dither, &outcome->faults);
+                         echo->later[lane], energy, dither, &trace->outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
             tally_shares(lines + (LONG_INDEX)reverse * fan->bins, fan->bins, 1, echo->bin[lane],
-                         echo->later[lane], energy, dither, &outcome->faults);
+                         echo->later[lane], energy, dither, &trace->outcome->faults);
     }
-    outcome->impulses += (RECORD_WORD)count;
+    trace->outcome->impulses += (RECORD_WORD)count;
 }
 
 /* The ways in which a path counts. A path that began with a specular bounce also stands for its
@@ -217,16 +211,17 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
 }
 
 /* Keeps the echo that a hit sends to the source. range: half the path less the reference range. */
-FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                        struct ways_counted ways, const struct chain *chain, vfloat energy,
-                        vfloat range, vfloat normalisation, struct chain_echo *echo)
+FUNCTION void keep_echo(const struct trace *trace, struct ways_counted ways,
+                        const struct chain *chain, vfloat energy, vfloat range,
+                        vfloat normalisation, struct chain_echo *echo)
 {
+    const struct fan_record *fan = &trace->fan;
     const mask both = ways.counts_reverse;
     vfloat kept = energy * normalisation;
     const vint none = VINT_OF(SPLAT((float)NO_STRIP));
-    const vint strip = strip_at(fan, receiver_of(chains, chain));
+    const vint strip = strip_at(fan, receiver_of(trace->chains, chain));
     vint reverse;
-    if (chains->is_focused) {
+    if (trace->chains->is_focused) {
         /* A path and its reverse are one echo of twice the amplitude and four times the energy. The
          * factor is 4 if this path counts for both, 2 if the reverse is found too. */
         kept = SELECT(both, kept * 4.0f, kept * 2.0f);

@@ -24,16 +24,16 @@ struct chain_hit {
 /* Returns the nearest object on each way, except the one that the way leaves behind. If all ways
  * leave one and the same object, as on a single target, the search costs nothing. If is_any, the
  * result is any object up to `limit`. */
-FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
-                                               GLOBAL const struct object_record *objects,
-                                               struct vector3 start, struct vector3 direction,
-                                               float minimum, vfloat limit, int is_any,
-                                               vint left_behind, mask is_ray)
+FUNCTION struct nearest_hit find_nearest_ahead(const struct trace *trace, struct vector3 start,
+                                               struct vector3 direction, float minimum,
+                                               vfloat limit, int is_any, vint left_behind,
+                                               mask is_ray)
 {
+    const struct fan_record *fan = &trace->fan;
     struct nearest_hit nearest;
-    if (has_object_tree(objects, fan->objects)) {
+    if (has_object_tree(trace->objects, fan->objects)) {
         const struct object_search search = {limit, is_any, left_behind, is_ray};
-        return search_objects(objects, fan->objects, start, direction, minimum, &search);
+        return search_objects(trace->objects, fan->objects, start, direction, minimum, &search);
     }
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = VINT_OF(SPLAT(-1.0f));
@@ -41,7 +41,8 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
         const mask is_ahead = is_ray & MASK_OF(left_behind != i);
         if (!ANY(is_ahead))
             continue;
-        const vfloat distance = object_distance(&objects[i], start, direction, SPLAT(minimum));
+        const vfloat distance =
+            object_distance(&trace->objects[i], start, direction, SPLAT(minimum));
         const mask is_nearer = is_ahead & MASK_OF(distance < nearest.distance);
         nearest.distance = SELECT(is_nearer, distance, nearest.distance);
         nearest.object = SELECT(is_nearer, VINT_OF(SPLAT((float)i)), nearest.object);
@@ -50,11 +51,10 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
 }
 
 /* Returns the hit on the nearest object, or on the seabed if that is nearer. */
-FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
-                                     GLOBAL const struct object_record *objects,
-                                     enum wanted_face wanted, struct vector3 start,
-                                     struct vector3 direction, const struct nearest_hit *nearest,
-                                     vfloat to_seabed, mask is_ray)
+FUNCTION struct chain_hit hit_of_ray(const struct trace *trace, enum wanted_face wanted,
+                                     struct vector3 start, struct vector3 direction,
+                                     const struct nearest_hit *nearest, vfloat to_seabed,
+                                     mask is_ray)
 {
     const mask on_object = MASK_OF(nearest->distance < to_seabed);
     struct chain_hit hit;
@@ -65,20 +65,19 @@ FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
     struct surface_face face;
-    face.normal = seabed_normal(fan, objects, hit.point, direction);
+    face.normal = seabed_normal(trace, hit.point, direction);
 #if HAS_MESHES
-    face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
+    face.lift = zero3();
 #endif
     hit.left_behind = VINT_OF(SPLAT(-1.0f));
-    for (int i = surface_after(-1, fan->objects, hit.surface, hit.is_hit); i < fan->objects;
-         i = surface_after(i, fan->objects, hit.surface, hit.is_hit)) {
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, hit.surface, hit.is_hit) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
             continue;
-        const struct surface_face found = object_face(&objects[i], wanted, start, direction,
+        const struct surface_face found = object_face(&trace->objects[i], wanted, start, direction,
                                                       SELECT(here, hit.distance, SPLAT(0.0f)));
         face = choose_face(here, found, face);
-        if (is_convex(&objects[i]))
+        if (is_convex(&trace->objects[i]))
             hit.left_behind = SELECT(here, hit.surface, hit.left_behind);
     }
     /* Inner sides scatter as outer ones do, but their sound meets the object again. */
@@ -90,35 +89,30 @@ FUNCTION struct chain_hit hit_of_ray(const struct fan_record *fan,
 }
 
 /* Returns the first hit of a ray. left_behind: of the surface where the ray starts. */
-FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
-                                         GLOBAL const struct object_record *objects,
-                                         enum wanted_face wanted, struct vector3 start,
-                                         struct vector3 direction, float minimum, vint left_behind,
-                                         mask is_ray)
+FUNCTION struct chain_hit find_chain_hit(const struct trace *trace, enum wanted_face wanted,
+                                         struct vector3 start, struct vector3 direction,
+                                         float minimum, vint left_behind, mask is_ray)
 {
-    const vfloat to_seabed =
-        seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
-    const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
+    const vfloat to_seabed = seabed_distance(trace, start, direction, SPLAT(minimum), is_ray);
+    const struct nearest_hit nearest = find_nearest_ahead(trace, start, direction, minimum,
                                                           SPLAT(FAR_AWAY), 0, left_behind, is_ray);
-    return hit_of_ray(fan, objects, wanted, start, direction, &nearest, to_seabed, is_ray);
+    return hit_of_ray(trace, wanted, start, direction, &nearest, to_seabed, is_ray);
 }
 
 /* Returns the hit of a ray on its own object, whatever else may hide the object. */
-FUNCTION struct chain_hit find_hit_on(const struct fan_record *fan,
-                                      GLOBAL const struct object_record *objects,
-                                      struct vector3 start, struct vector3 direction, float minimum,
-                                      vint object, mask is_ray)
+FUNCTION struct chain_hit find_hit_on(const struct trace *trace, struct vector3 start,
+                                      struct vector3 direction, float minimum, vint object,
+                                      mask is_ray)
 {
     struct nearest_hit nearest = {SPLAT(FAR_AWAY), object};
-    for (int i = surface_after(-1, fan->objects, object, is_ray); i < fan->objects;
-         i = surface_after(i, fan->objects, object, is_ray)) {
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, object, is_ray) {
         const mask here = is_ray & MASK_OF(object == i);
         if (ANY(here))
             nearest.distance =
-                SELECT(here, object_distance(&objects[i], start, direction, SPLAT(minimum)),
+                SELECT(here, object_distance(&trace->objects[i], start, direction, SPLAT(minimum)),
                        nearest.distance);
     }
-    return hit_of_ray(fan, objects, FACE_OF_SCATTERING, start, direction, &nearest, SPLAT(FAR_AWAY),
+    return hit_of_ray(trace, FACE_OF_SCATTERING, start, direction, &nearest, SPLAT(FAR_AWAY),
                       is_ray);
 }
 
@@ -135,12 +129,11 @@ FUNCTION int first_surface_number(GLOBAL const struct chain_record *chains)
 }
 
 /* Returns the record of surface number i of a scene. */
-FUNCTION GLOBAL const struct surface_record *surface_number(
-    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects, int i)
+FUNCTION GLOBAL const struct surface_record *surface_number(const struct trace *trace, int i)
 {
     if (i == SEA_SURFACE)
-        return &chains->sea_surface;
-    return i == SEABED ? &chains->seabed : &objects[i].surface;
+        return &trace->chains->sea_surface;
+    return i == SEABED ? &trace->chains->seabed : &trace->objects[i].surface;
 }
 
 /* Returns the factor of fouling of surface number i on the scattering at a hit. */
@@ -152,21 +145,19 @@ FUNCTION vfloat fouling_at(GLOBAL const struct object_record *objects, int i,
 }
 
 /* Returns the rough part's scattering at a hit, from one direction into another (surface.h). */
-FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct chain_record *chain,
-                              GLOBAL const struct object_record *objects,
-                              const struct chain_hit *hit, struct vector3 out)
+FUNCTION vfloat scattering_at(const struct trace *trace, const struct chain_hit *hit,
+                              struct vector3 out)
 {
     vfloat scattering = SPLAT(0.0f);
-    const int before = first_surface_number(chain) - 1;
-    for (int i = surface_after(before, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
-         i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
+    FOR_SURFACES_MET (i, first_surface_number(trace->chains), trace->fan.objects, hit->surface,
+                      hit->is_hit) {
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (ANY(here))
-            scattering = SELECT(
-                here,
-                rough_scattering(surface_number(chain, objects, i), hit->normal, hit->back, out) *
-                    fouling_at(objects, i, hit, out),
-                scattering);
+            scattering =
+                SELECT(here,
+                       rough_scattering(surface_number(trace, i), hit->normal, hit->back, out) *
+                           fouling_at(trace->objects, i, hit, out),
+                       scattering);
     }
     return scattering;
 }
@@ -177,16 +168,14 @@ FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 }
 
 /* Returns where nothing is between a hit and a point that lies `path` away. */
-FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                          const struct chain_hit *hit, struct vector3 direction, vfloat path,
-                          mask is_way)
+FUNCTION mask is_open_way(const struct trace *trace, const struct chain_hit *hit,
+                          struct vector3 direction, vfloat path, mask is_way)
 {
     const struct vector3 start = start_from(hit);
     const struct nearest_hit blocking =
-        find_nearest_ahead(fan, objects, start, direction, 0.0f, path, 1, hit->left_behind, is_way);
+        find_nearest_ahead(trace, start, direction, 0.0f, path, 1, hit->left_behind, is_way);
     const mask is_open = is_way & MASK_OF(blocking.distance > path);
-    return is_open &
-           MASK_OF(seabed_distance(fan, objects, start, direction, SPLAT(0.0f), is_open) > path);
+    return is_open & MASK_OF(seabed_distance(trace, start, direction, SPLAT(0.0f), is_open) > path);
 }
 
 struct target_choice;
@@ -219,17 +208,15 @@ struct chain {
 /* Sends out rays from the sonar at x. cell: the ray's piece of wavefront, along the track and in
  * elevation, m rad. only: the one object that each lane looks for, whatever hides it; 0: the first
  * surface is taken. Random numbers are left to be set. */
-NOINLINE void begin_chain(const struct fan_record *fan,
-                          GLOBAL const struct ray_piece_record *pieces,
-                          GLOBAL const struct object_record *objects, vfloat x, vfloat elevation,
-                          vfloat cell, const vint *only, mask is_ray, struct chain *chain)
+NOINLINE void begin_chain(const struct trace *trace, vfloat x, vfloat elevation, vfloat cell,
+                          const vint *only, mask is_ray, struct chain *chain)
 {
-    const struct fan_ray ray = fan_ray_at(fan, pieces, x, elevation);
+    const struct fan_record *fan = &trace->fan;
+    const struct fan_ray ray = fan_ray_at(trace, x, elevation);
     const float minimum = -fan->reference_range;
-    chain->hit = only
-                     ? find_hit_on(fan, objects, ray.closest, ray.direction, minimum, *only, is_ray)
-                     : find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
-                                      minimum, VINT_OF(SPLAT(-1.0f)), is_ray);
+    chain->hit = only ? find_hit_on(trace, ray.closest, ray.direction, minimum, *only, is_ray)
+                      : find_chain_hit(trace, FACE_OF_SCATTERING, ray.closest, ray.direction,
+                                       minimum, VINT_OF(SPLAT(-1.0f)), is_ray);
     chain->choice = 0;
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);

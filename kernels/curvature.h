@@ -29,23 +29,17 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     struct vector3 change = choose3(MASK_OF(square_forth < square_back), forth, back);
     change = choose3(is_even, along3(back, unlike, SPLAT(0.5f)), change);
     /* The hit's normal is on the ray's side, which may be the inner one. */
-    const vfloat side = SELECT(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    const vfloat scale = side / step;
-    change.x = change.x * scale;
-    change.y = change.y * scale;
-    change.z = change.z * scale;
-    return change;
+    const vfloat side = sign_of(dot3(here, normal));
+    return scaled3(change, side / step);
 }
 
 /* Returns the change of a hit's normal for a tangent shift. Seabed and facets are flat. */
-FUNCTION struct vector3 normal_change_at(GLOBAL const struct object_record *objects, int count,
-                                         const struct chain_hit *hit, struct vector3 shift)
+FUNCTION struct vector3 normal_change_at(const struct trace *trace, const struct chain_hit *hit,
+                                         struct vector3 shift)
 {
-    struct vector3 change;
-    change.x = change.y = change.z = SPLAT(0.0f);
-    for (int i = surface_after(-1, count, hit->surface, hit->is_hit); i < count;
-         i = surface_after(i, count, hit->surface, hit->is_hit)) {
-        GLOBAL const struct object_record *object = &objects[i];
+    struct vector3 change = zero3();
+    FOR_SURFACES_MET (i, 0, trace->fan.objects, hit->surface, hit->is_hit) {
+        GLOBAL const struct object_record *object = &trace->objects[i];
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (object->shape == SHAPE_MESH || !ANY(here))
             continue;

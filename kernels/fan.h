@@ -3,11 +3,9 @@
 #define SONJECT_KERNELS_FAN_H
 
 #include "elementary.h"
-#include "group.h"
 #include "interval.h"
-#include "layout.h"
-#include "random.h"
 #include "ray_table.h"
+#include "trace.h"
 
 /* A ray near the frame's origin. Distances count from the ray's point closest to the origin. At
  * 500 m the sonar's own coordinates would leave too few digits for the phase. */
@@ -26,20 +24,17 @@ struct fan_ray {
 /* Returns the ray at a track position x and an elevation e, rad over the direction d from the track
  * to the origin. With u upward across d and R the reference range, the ray runs along d cos e +
  * u sin e. It passes the origin at R sin e (u cos e - d sin e), at the range R cos e. */
-FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
-                                   GLOBAL const struct ray_piece_record *pieces, vfloat x,
-                                   vfloat elevation)
+FUNCTION struct fan_ray fan_ray_at(const struct trace *trace, vfloat x, vfloat elevation)
 {
+    const struct fan_record *fan = &trace->fan;
     vfloat sine, cosine;
     sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
     cosine = SQUARE_ROOT(1.0f - sine * sine);
     struct fan_ray ray;
-    ray.direction.x = SPLAT(0.0f);
-    ray.direction.y = cosine * fan->cosine_depression + sine * fan->sine_depression;
-    ray.direction.z = sine * fan->cosine_depression - cosine * fan->sine_depression;
-    ray.upward.x = SPLAT(0.0f);
-    ray.upward.y = -ray.direction.z;
-    ray.upward.z = ray.direction.y;
+    ray.direction =
+        vector3_of(SPLAT(0.0f), cosine * fan->cosine_depression + sine * fan->sine_depression,
+                   sine * fan->cosine_depression - cosine * fan->sine_depression);
+    ray.upward = vector3_of(SPLAT(0.0f), -ray.direction.z, ray.direction.y);
     vfloat offset = fan->reference_range * sine;
     ray.range_at_closest = -offset * sine / (1.0f + cosine);
     ray.wavefront = fan->reference_range + ray.range_at_closest;
@@ -47,15 +42,13 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
     ray.range_per_metre = SPLAT(1.0f);
     ray.turn = SPLAT(1.0f);
     if (fan->table.pieces > 0) {
-        const struct table_ray bent = look_up_ray(fan->table, pieces, elevation);
+        const struct table_ray bent = look_up_ray(fan->table, trace->pieces, elevation);
         offset = bent.offset;
         ray.range_at_closest = bent.range;
         ray.wavefront = bent.wavefront;
         ray.spreading = bent.spreading;
     }
-    ray.closest.x = x;
-    ray.closest.y = offset * ray.upward.y;
-    ray.closest.z = offset * ray.upward.z;
+    ray.closest = vector3_of(x, offset * ray.upward.y, offset * ray.upward.z);
     return ray;
 }
 
@@ -75,48 +68,6 @@ FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_r
     const vfloat range = fan->reference_range + range_along(ray, distance);
     const vfloat ground = fan->table.ground_range + (ray->closest.y + distance * ray->direction.y);
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
-}
-
-/* Returns the strip of a group. Devices hand groups out in runs, and strips near targets take
- * longest. Neighbours in a run are therefore strides apart, so that all runs take about as long.
- * The stride and the number of strips have no common factor, so every strip gets its turn, in one
- * call of the kernel or in several. */
-FUNCTION int strip_of_group(const struct fan_record *fan, int group)
-{
-    const LONG_INDEX turn = (LONG_INDEX)fan->first_turn + group / fan->segments;
-    return (int)(turn * fan->strip_stride % fan->strips);
-}
-
-/* Returns a work-item's first ray in a segment. Its next rays follow in steps of ray_step. */
-FUNCTION RECORD_WORD first_ray_of_item(int segment)
-{
-    return (RECORD_WORD)segment * GROUP_WIDTH + GROUP_ITEM * WIDTH;
-}
-
-FUNCTION RECORD_WORD ray_step(const struct fan_record *fan)
-{
-    return (RECORD_WORD)fan->segments * GROUP_WIDTH;
-}
-
-/* Returns the key of a strip of this launch. It is the same in a window as in the whole patch. */
-FUNCTION struct random_key key_of_strip(const struct fan_record *fan, int strip)
-{
-    return random_key_of(fan->seed_low, fan->seed_high, fan->stream,
-                         (RECORD_WORD)(fan->track_strip + fan->first_strip + strip));
-}
-
-/* Returns how many of `most` rays, from the first on, the fan has. */
-FUNCTION RECORD_WORD rays_from(const struct fan_record *fan, RECORD_WORD first_ray,
-                               RECORD_WORD most)
-{
-    const RECORD_WORD left = fan->rays - first_ray;
-    return left < most ? left : most;
-}
-
-/* Returns the along-track position of the middle of a strip of this launch, m. */
-FUNCTION float strip_position(const struct fan_record *fan, int strip)
-{
-    return fan->first_strip_x + (float)(fan->first_strip + strip) * fan->strip_width;
 }
 
 /* The two bins about a bin coordinate. Far outside the grid they are bins that do not exist. */

@@ -62,9 +62,8 @@ FUNCTION vfloat fouling_factor(GLOBAL const struct object_record *object, struct
     GLOBAL const struct fouling_record *fouling =
         (GLOBAL const struct fouling_record *)((GLOBAL const RECORD_WORD *)object +
                                                object->fouling_words);
-    point.x = point.x - object->centre_x;
-    point.y = point.y - object->centre_y;
-    point.z = point.z - object->centre_z;
+    point = vector3_of(point.x - object->centre_x, point.y - object->centre_y,
+                       point.z - object->centre_z);
     if (fouling->slope_gain > 0.0f) {
         const struct vector3 sum = along3(one, other, SPLAT(1.0f));
         factor =

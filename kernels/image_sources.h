@@ -27,12 +27,11 @@ FUNCTION vfloat cosine_at_boundary(GLOBAL const struct boundary_record *boundary
 
 /* Follows a leg from a hit to a source. direction: unit, to the source in unfolded space; length:
  * m. Lanes that are not wanted stay closed. */
-FUNCTION struct leg follow_leg(const struct fan_record *fan,
-                               GLOBAL const struct image_pair_record *pair,
-                               GLOBAL const struct source_record *source,
-                               GLOBAL const struct object_record *objects, struct vector3 point,
-                               struct vector3 direction, vfloat length, mask is_wanted)
+FUNCTION struct leg follow_leg(const struct trace *trace, GLOBAL const struct source_record *source,
+                               struct vector3 point, struct vector3 direction, vfloat length,
+                               mask is_wanted)
 {
+    const struct fan_record *fan = &trace->fan;
     struct leg leg;
     leg.is_open = is_wanted;
     leg.reflection_real = SPLAT(1.0f);
@@ -43,14 +42,14 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
     int is_seen = 1; /* through layers, only obstacles in the water around the object are seen */
     int kind = source->last_boundary;
     for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
-        GLOBAL const struct boundary_record *boundary = &pair->boundaries[kind];
+        GLOBAL const struct boundary_record *boundary = &trace->pair->boundaries[kind];
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
         const vfloat step =
             (boundary->height - point.z) / SELECT(is_level, SPLAT(1.0f), direction.z);
         if (is_seen) {
-            leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point,
+            leg.is_open = leg.is_open & MASK_OF(find_obstacle(trace->objects, fan->objects, point,
                                                               direction, step) > step);
-            leg.is_open = is_clear_of_relief(fan, objects, point, direction, step, leg.is_open);
+            leg.is_open = is_clear_of_relief(trace, point, direction, step, leg.is_open);
         }
         leg.is_open = leg.is_open & ~is_level;
         is_seen = is_seen && !(is_bent && kind == BOUNDARY_SURFACE);
@@ -68,9 +67,9 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
         kind = 1 - kind;
     }
     if (is_seen && ANY(leg.is_open)) {
-        leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point, direction,
-                                                          length) > length);
-        leg.is_open = is_clear_of_relief(fan, objects, point, direction, length, leg.is_open);
+        leg.is_open = leg.is_open & MASK_OF(find_obstacle(trace->objects, fan->objects, point,
+                                                          direction, length) > length);
+        leg.is_open = is_clear_of_relief(trace, point, direction, length, leg.is_open);
     }
     return leg;
 }
@@ -90,9 +89,7 @@ FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_
     const struct ray_to_point ray = find_ray_to(source->table, pieces, source->cosine_depression,
                                                 source->sine_depression, hit.y, hit.z);
     struct line_from_source line;
-    line.direction.x = SPLAT(0.0f);
-    line.direction.y = ray.directions.away_y;
-    line.direction.z = ray.directions.away_z;
+    line.direction = vector3_of(SPLAT(0.0f), ray.directions.away_y, ray.directions.away_z);
     line.wavefront = ray.wavefront;
     line.excess = ray.range;
     line.spreading = ray.spreading;
@@ -112,24 +109,22 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
     line.wavefront = SQUARE_ROOT(range * range + change);
     line.excess = change / (line.wavefront + range);
     line.spreading = SPLAT(1.0f);
-    line.direction.x = SPLAT(0.0f);
-    line.direction.y = (range * source->cosine_depression + hit.y) / line.wavefront;
-    line.direction.z = (hit.z - range * source->sine_depression) / line.wavefront;
+    line.direction =
+        vector3_of(SPLAT(0.0f), (range * source->cosine_depression + hit.y) / line.wavefront,
+                   (hit.z - range * source->sine_depression) / line.wavefront);
     return line;
 }
 
 /* Returns the distance along a fan's rays at which they are past their last boundary. */
-FUNCTION vfloat distance_past_boundaries(const struct fan_record *fan,
-                                         GLOBAL const struct image_pair_record *pair,
-                                         const struct fan_ray *ray)
+FUNCTION vfloat distance_past_boundaries(const struct trace *trace, const struct fan_ray *ray)
 {
-    if (pair->outgoing.bounces == 0)
-        return SPLAT(-fan->reference_range);
+    if (trace->pair->outgoing.bounces == 0)
+        return SPLAT(-trace->fan.reference_range);
     const vfloat slope = ray->direction.z;
-    const mask is_away = pair->outgoing.last_boundary == BOUNDARY_SEABED
+    const mask is_away = trace->pair->outgoing.last_boundary == BOUNDARY_SEABED
                              ? MASK_OF(slope > 1.0e-6f)
                              : MASK_OF(slope < -1.0e-6f);
-    const float height = pair->boundaries[pair->outgoing.last_boundary].height;
+    const float height = trace->pair->boundaries[trace->pair->outgoing.last_boundary].height;
     return SELECT(is_away, (height - ray->closest.z) / SELECT(is_away, slope, SPLAT(1.0f)),
                   SPLAT(FAR_AWAY));
 }
@@ -143,20 +138,16 @@ struct image_hit {
     vfloat cosine;        /* cosine of the angle of incidence */
 };
 
-FUNCTION struct image_hit find_image_hit(const struct fan_record *fan,
-                                         GLOBAL const struct image_pair_record *pair,
-                                         GLOBAL const struct object_record *objects,
-                                         enum wanted_face wanted, const struct fan_ray *ray,
-                                         mask is_ray)
+FUNCTION struct image_hit find_image_hit(const struct trace *trace, enum wanted_face wanted,
+                                         const struct fan_ray *ray, mask is_ray)
 {
-    GLOBAL const struct object_record *object = &objects[fan->only_object];
-    const vfloat past_boundaries = distance_past_boundaries(fan, pair, ray);
+    GLOBAL const struct object_record *object = &trace->objects[trace->fan.only_object];
+    const vfloat past_boundaries = distance_past_boundaries(trace, ray);
     const vfloat distance = object_distance(object, ray->closest, ray->direction, past_boundaries);
     const mask on_object = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY);
     struct image_hit hit;
-    hit.is_hit =
-        on_object & MASK_OF(distance < seabed_distance(fan, objects, ray->closest, ray->direction,
-                                                       past_boundaries, on_object));
+    hit.is_hit = on_object & MASK_OF(distance < seabed_distance(trace, ray->closest, ray->direction,
+                                                                past_boundaries, on_object));
     const vfloat safe = SELECT(hit.is_hit, distance, SPLAT(0.0f));
     hit.point = along3(ray->closest, ray->direction, safe);
     const struct surface_face face =
@@ -183,43 +174,40 @@ struct image_path {
 
 /* Returns the square root of both legs' intensities, normalised by the square of half the path. A
  * leg that no layer bends has the spreading cos(grazing angle). */
-FUNCTION vfloat spreading_through_layers(const struct fan_record *fan,
-                                         GLOBAL const struct image_pair_record *pair,
-                                         const struct fan_ray *ray, const struct image_hit *hit,
-                                         const struct image_path *path, vfloat half_path)
+FUNCTION vfloat spreading_through_layers(const struct trace *trace, const struct fan_ray *ray,
+                                         const struct image_hit *hit, const struct image_path *path,
+                                         vfloat half_path)
 {
-    const vfloat out = fan->table.pieces > 0 ? ray->spreading : ray->direction.y;
+    const vfloat out = trace->fan.table.pieces > 0 ? ray->spreading : ray->direction.y;
     const vfloat back =
-        pair->returning.table.pieces > 0 ? path->back.spreading : path->back.direction.y;
-    const vfloat ground = pair->outgoing.table.ground_range + hit->point.y;
+        trace->pair->returning.table.pieces > 0 ? path->back.spreading : path->back.direction.y;
+    const vfloat ground = trace->pair->outgoing.table.ground_range + hit->point.y;
     return SQUARE_ROOT(out * back / (path->wavefront_out * path->back.wavefront)) * half_path *
            half_path / ground;
 }
 
-FUNCTION struct image_path follow_path(const struct fan_record *fan,
-                                       GLOBAL const struct ray_piece_record *pieces,
-                                       GLOBAL const struct image_pair_record *pair,
-                                       GLOBAL const struct object_record *objects,
-                                       const struct fan_ray *ray, const struct image_hit *hit,
-                                       struct outcome_record *outcome)
+FUNCTION struct image_path follow_path(const struct trace *trace, const struct fan_ray *ray,
+                                       const struct image_hit *hit)
 {
+    const struct fan_record *fan = &trace->fan;
     struct image_path path;
-    path.back = line_from_source(&pair->returning, pieces, hit->point);
+    path.back = line_from_source(&trace->pair->returning, trace->pieces, hit->point);
     path.wavefront_out = ray->wavefront + (hit->range - ray->range_at_closest);
     path.range = 0.5f * (hit->range + path.back.excess);
-    const vfloat half_path = 0.5f * (fan->reference_range + pair->returning.range) + path.range;
+    const vfloat half_path =
+        0.5f * (fan->reference_range + trace->pair->returning.range) + path.range;
     path.spreading = (half_path / path.wavefront_out) * (half_path / path.back.wavefront);
-    if (fan->table.pieces > 0 || pair->returning.table.pieces > 0)
-        path.spreading = spreading_through_layers(fan, pair, ray, hit, &path, half_path);
+    if (fan->table.pieces > 0 || trace->pair->returning.table.pieces > 0)
+        path.spreading = spreading_through_layers(trace, ray, hit, &path, half_path);
     path.cosine_back = -dot3(hit->normal, path.back.direction);
     const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
     const struct vector3 start = along3(hit->start, hit->normal, SPLAT(START_OFF_SURFACE));
-    const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start,
+    const struct leg out = follow_leg(trace, &trace->pair->outgoing, start,
                                       reversed3(ray->direction), path.wavefront_out, is_lit);
     const struct leg returned =
-        follow_leg(fan, pair, &pair->returning, objects, start, reversed3(path.back.direction),
+        follow_leg(trace, &trace->pair->returning, start, reversed3(path.back.direction),
                    path.back.wavefront, out.is_open);
-    outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
+    trace->outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
     path.is_open = returned.is_open;
     path.reflection_real = out.reflection_real * returned.reflection_real -
                            out.reflection_imaginary * returned.reflection_imaginary;

@@ -14,29 +14,22 @@
 /* Turns a vector of the launch's frame into the object's own frame. */
 FUNCTION struct vector3 into_object(GLOBAL const struct object_record *object, struct vector3 v)
 {
-    struct vector3 turned;
-    turned.x = v.x * object->axes[0] + v.y * object->axes[1] + v.z * object->axes[2];
-    turned.y = v.x * object->axes[3] + v.y * object->axes[4] + v.z * object->axes[5];
-    turned.z = v.x * object->axes[6] + v.y * object->axes[7] + v.z * object->axes[8];
-    return turned;
+    return vector3_of(v.x * object->axes[0] + v.y * object->axes[1] + v.z * object->axes[2],
+                      v.x * object->axes[3] + v.y * object->axes[4] + v.z * object->axes[5],
+                      v.x * object->axes[6] + v.y * object->axes[7] + v.z * object->axes[8]);
 }
 
 FUNCTION struct vector3 out_of_object(GLOBAL const struct object_record *object, struct vector3 v)
 {
-    struct vector3 turned;
-    turned.x = v.x * object->axes[0] + v.y * object->axes[3] + v.z * object->axes[6];
-    turned.y = v.x * object->axes[1] + v.y * object->axes[4] + v.z * object->axes[7];
-    turned.z = v.x * object->axes[2] + v.y * object->axes[5] + v.z * object->axes[8];
-    return turned;
+    return vector3_of(v.x * object->axes[0] + v.y * object->axes[3] + v.z * object->axes[6],
+                      v.x * object->axes[1] + v.y * object->axes[4] + v.z * object->axes[7],
+                      v.x * object->axes[2] + v.y * object->axes[5] + v.z * object->axes[8]);
 }
 
 FUNCTION struct vector3 from_centre(GLOBAL const struct object_record *object, struct vector3 point)
 {
-    struct vector3 relative;
-    relative.x = point.x - object->centre_x;
-    relative.y = point.y - object->centre_y;
-    relative.z = point.z - object->centre_z;
-    return relative;
+    return vector3_of(point.x - object->centre_x, point.y - object->centre_y,
+                      point.z - object->centre_z);
 }
 
 #define SHAPE_ONE(NUMBER, name, traits) +1
@@ -212,7 +205,7 @@ FUNCTION struct surface_face object_face(GLOBAL const struct object_record *obje
         face.lift = out_of_object(object, minus3(surface.lifted, surface.point));
         return face;
     }
-    face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
+    face.lift = zero3();
 #endif
     (void)wanted;
     face.normal = object_normal(object, point, direction, distance);

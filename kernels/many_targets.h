@@ -9,10 +9,9 @@
 
 /* Returns the groups of spheres, which lie behind the sphere_records. Behind them lie the groups of
  * the spheres around groups. Unused slots of a group have radius 0. */
-FUNCTION GLOBAL const struct sphere_group *groups_of(GLOBAL const struct chain_record *chains,
-                                                     GLOBAL const struct sphere_record *spheres)
+FUNCTION GLOBAL const struct sphere_group *groups_of(const struct trace *trace)
 {
-    return (GLOBAL const struct sphere_group *)(spheres + chains->spheres);
+    return (GLOBAL const struct sphere_group *)(trace->spheres + trace->chains->spheres);
 }
 
 /* The probabilities by which rays choose their spheres. */
@@ -32,9 +31,9 @@ FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group
                                          struct vector3 point)
 {
     struct seen_spheres seen;
-    seen.way.x = LOAD_VFLOAT(group->centre_x + slot) - point.x;
-    seen.way.y = LOAD_VFLOAT(group->centre_y + slot) - point.y;
-    seen.way.z = LOAD_VFLOAT(group->centre_z + slot) - point.z;
+    seen.way = vector3_of(LOAD_VFLOAT(group->centre_x + slot) - point.x,
+                          LOAD_VFLOAT(group->centre_y + slot) - point.y,
+                          LOAD_VFLOAT(group->centre_z + slot) - point.z);
     const vfloat radius = LOAD_VFLOAT(group->radius + slot);
     seen.square_distance = dot3(seen.way, seen.way);
     seen.square_radius = radius * radius;
@@ -45,10 +44,7 @@ FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group
 FUNCTION vfloat choice_weight(const struct target_choice *choice,
                               GLOBAL const struct sphere_group *group, int slot)
 {
-    struct vector3 from;
-    from.x = SPLAT(choice->x);
-    from.y = SPLAT(choice->y);
-    from.z = SPLAT(choice->z);
+    const struct vector3 from = vector3_of(SPLAT(choice->x), SPLAT(choice->y), SPLAT(choice->z));
     const struct seen_spheres seen = see_spheres(group, slot, from);
     mask is_outside;
     const vfloat opening =
@@ -67,19 +63,18 @@ FUNCTION void weigh_group(const struct target_choice *choice,
 }
 
 /* Sums the openings one after the other, whatever the width. */
-FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
-                           GLOBAL const struct sphere_record *spheres, struct target_choice *choice)
+FUNCTION void begin_choice(const struct trace *trace, struct target_choice *choice)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     float sum = 0.0f;
-    for (int group = 0; group < chains->groups; group++) {
+    for (int group = 0; group < trace->chains->groups; group++) {
         float weights[SPHERES_OF_GROUP];
         choice->before[group] = sum;
         weigh_group(choice, &groups[group], weights);
         for (int slot = 0; slot < SPHERES_OF_GROUP; slot++)
             sum += weights[slot];
     }
-    choice->before[chains->groups] = sum;
+    choice->before[trace->chains->groups] = sum;
 }
 
 /* The spheres that lanes choose, and the rest 0...1 of each lane's uniform deviate. */
@@ -119,13 +114,12 @@ FUNCTION void sample_sphere(const struct target_choice *choice,
 
 /* Chooses spheres by the choice that all lanes share. If that is 0, each lane chooses for itself
  * and leaves its choice in own[lane]. */
-FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record *chains,
-                                               GLOBAL const struct sphere_record *spheres,
+FUNCTION struct sampled_spheres sample_spheres(const struct trace *trace,
                                                const struct target_choice *shared,
                                                struct target_choice *own, struct vector3 point,
                                                vfloat uniform, mask is_wanted)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     float from[3][WIDTH], uniforms[WIDTH];
     float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
     store_vector3(point, from);
@@ -143,20 +137,19 @@ FUNCTION struct sampled_spheres sample_spheres(GLOBAL const struct chain_record 
             own[lane].y = from[1][lane];
             own[lane].z = from[2][lane];
             own[lane].square_blur = 0.0f;
-            begin_choice(chains, spheres, &own[lane]);
+            begin_choice(trace, &own[lane]);
             choice = &own[lane];
         }
-        sample_sphere(choice, groups, chains->groups,
-                      uniforms[lane] * choice->before[chains->groups], &group, &slot, &rest[lane]);
+        sample_sphere(choice, groups, trace->chains->groups,
+                      uniforms[lane] * choice->before[trace->chains->groups], &group, &slot,
+                      &rest[lane]);
         x[lane] = groups[group].centre_x[slot];
         y[lane] = groups[group].centre_y[slot];
         z[lane] = groups[group].centre_z[slot];
         radius[lane] = groups[group].radius[slot];
     }
     struct sampled_spheres chosen;
-    chosen.centre.x = LOAD_VFLOAT(x);
-    chosen.centre.y = LOAD_VFLOAT(y);
-    chosen.centre.z = LOAD_VFLOAT(z);
+    chosen.centre = vector3_of(LOAD_VFLOAT(x), LOAD_VFLOAT(y), LOAD_VFLOAT(z));
     chosen.radius = LOAD_VFLOAT(radius);
     chosen.rest = LOAD_VFLOAT(rest);
     return chosen;
@@ -243,13 +236,12 @@ struct rays_lanes {
     float point[3][WIDTH], direction[3][WIDTH];
 };
 
-FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
-                                GLOBAL const struct sphere_record *spheres,
-                                const struct target_choice *shared, const struct target_choice *own,
-                                struct vector3 point, struct vector3 direction, mask is_wanted,
-                                vfloat *by_solid_angle, vfloat *brdf_share)
+FUNCTION void densities_towards(const struct trace *trace, const struct target_choice *shared,
+                                const struct target_choice *own, struct vector3 point,
+                                struct vector3 direction, mask is_wanted, vfloat *by_solid_angle,
+                                vfloat *brdf_share)
 {
-    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    GLOBAL const struct sphere_group *groups = groups_of(trace);
     struct rays_lanes lanes;
     const struct rays_lanes *rays = &lanes;
     float cones[WIDTH], shares[WIDTH];
@@ -260,7 +252,7 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
     for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
         const int lane = lowest_bit(left);
         const struct target_density density =
-            single_density(chains, groups, shared ? shared : &own[lane],
+            single_density(trace->chains, groups, shared ? shared : &own[lane],
                            splat_vector3(rays->point, lane), splat_vector3(rays->direction, lane));
         cones[lane] = density.by_solid_angle;
         shares[lane] = density.brdf_share;

@@ -39,11 +39,8 @@ struct mesh_stack {
 FUNCTION struct vector3 splat_rows(GLOBAL const float *values, int slots, const int rows[3],
                                    int slot)
 {
-    struct vector3 v;
-    v.x = SPLAT(values[rows[0] * slots + slot]);
-    v.y = SPLAT(values[rows[1] * slots + slot]);
-    v.z = SPLAT(values[rows[2] * slots + slot]);
-    return v;
+    return vector3_of(SPLAT(values[rows[0] * slots + slot]), SPLAT(values[rows[1] * slots + slot]),
+                      SPLAT(values[rows[2] * slots + slot]));
 }
 
 /* Returns which rays meet the box of a slot; *entry: see meets_box. */

@@ -25,11 +25,8 @@ FUNCTION vfloat one_over_component(vfloat component)
 
 FUNCTION struct vector3 one_over_components(struct vector3 direction)
 {
-    struct vector3 inverse;
-    inverse.x = one_over_component(direction.x);
-    inverse.y = one_over_component(direction.y);
-    inverse.z = one_over_component(direction.z);
-    return inverse;
+    return vector3_of(one_over_component(direction.x), one_over_component(direction.y),
+                      one_over_component(direction.z));
 }
 
 /* Returns the mesh's axis that is z of the ray's own axes: 0 x, 1 y, 2 z. The factors keep the
@@ -55,11 +52,9 @@ FUNCTION void find_own_axes(int own_z, int axes[3])
 FUNCTION struct vector3 in_own_axes(struct vector3 v, vint own_z)
 {
     const mask is_x = MASK_OF(own_z == 0), is_y = MASK_OF(own_z == 1);
-    struct vector3 turned;
-    turned.x = SELECT(is_x, v.y, SELECT(is_y, v.z, v.x));
-    turned.y = SELECT(is_x, v.z, SELECT(is_y, v.x, v.y));
-    turned.z = SELECT(is_x, v.x, SELECT(is_y, v.y, v.z));
-    return turned;
+    return vector3_of(SELECT(is_x, v.y, SELECT(is_y, v.z, v.x)),
+                      SELECT(is_x, v.z, SELECT(is_y, v.x, v.y)),
+                      SELECT(is_x, v.x, SELECT(is_y, v.y, v.z)));
 }
 
 FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vint own_z,
@@ -184,22 +179,18 @@ struct mesh_corners {
  * z from 0. */
 FUNCTION struct vector3 seen_along(const struct mesh_ray *ray, struct vector3 point)
 {
-    struct vector3 seen;
-    seen.z = point.z - ray->point.z;
-    seen.x = (point.x - ray->point.x) - ray->shear_x * seen.z;
-    seen.y = (point.y - ray->point.y) - ray->shear_y * seen.z;
-    return seen;
+    const vfloat z = point.z - ray->point.z;
+    return vector3_of((point.x - ray->point.x) - ray->shear_x * z,
+                      (point.y - ray->point.y) - ray->shear_y * z, z);
 }
 
 /* Returns the functions of the edges opposite to a, b and c, for corners as seen along the ray.
  * Divided by their sum they are the corners' shares of the hit. */
 FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
 {
-    struct vector3 edges;
-    edges.x = seen->c.x * seen->b.y - seen->c.y * seen->b.x;
-    edges.y = seen->a.x * seen->c.y - seen->a.y * seen->c.x;
-    edges.z = seen->b.x * seen->a.y - seen->b.y * seen->a.x;
-    return edges;
+    return vector3_of(seen->c.x * seen->b.y - seen->c.y * seen->b.x,
+                      seen->a.x * seen->c.y - seen->a.y * seen->c.x,
+                      seen->b.x * seen->a.y - seen->b.y * seen->a.x);
 }
 
 /* Returns where the ray's line is inside the triangle's own box, padded. */
@@ -208,12 +199,12 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
 {
     const struct vector3 a = corners->a, b = corners->b, c = corners->c;
     struct vector3 lower, upper;
-    lower.x = smaller(smaller(a.x, b.x), c.x) - ray->padding;
-    lower.y = smaller(smaller(a.y, b.y), c.y) - ray->padding;
-    lower.z = smaller(smaller(a.z, b.z), c.z) - ray->padding;
-    upper.x = larger(larger(a.x, b.x), c.x) + ray->padding;
-    upper.y = larger(larger(a.y, b.y), c.y) + ray->padding;
-    upper.z = larger(larger(a.z, b.z), c.z) + ray->padding;
+    lower = vector3_of(smaller(smaller(a.x, b.x), c.x) - ray->padding,
+                       smaller(smaller(a.y, b.y), c.y) - ray->padding,
+                       smaller(smaller(a.z, b.z), c.z) - ray->padding);
+    upper = vector3_of(larger(larger(a.x, b.x), c.x) + ray->padding,
+                       larger(larger(a.y, b.y), c.y) + ray->padding,
+                       larger(larger(a.z, b.z), c.z) + ray->padding);
     return interval_in_box(ray, lower, upper);
 }
 

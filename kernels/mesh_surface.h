@@ -67,23 +67,15 @@ FUNCTION struct vector3 unit3(struct vector3 v, struct vector3 otherwise)
     const vfloat largest = larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
     const mask is_some = MASK_OF(largest > 0.0f);
     const vfloat safe = SELECT(is_some, largest, SPLAT(1.0f));
-    v.x = v.x / safe;
-    v.y = v.y / safe;
-    v.z = v.z / safe;
+    v = divided3(v, safe);
     const vfloat length = SQUARE_ROOT(SELECT(is_some, dot3(v, v), SPLAT(1.0f)));
-    v.x = v.x / length;
-    v.y = v.y / length;
-    v.z = v.z / length;
+    v = divided3(v, length);
     return choose3(is_some, v, otherwise);
 }
 
 FUNCTION struct vector3 cross3(struct vector3 a, struct vector3 b)
 {
-    struct vector3 product;
-    product.x = a.y * b.z - a.z * b.y;
-    product.y = a.z * b.x - a.x * b.z;
-    product.z = a.x * b.y - a.y * b.x;
-    return product;
+    return vector3_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
 /* Returns a point's depth below the plane through a corner, along its normal times side; >= 0. */

@@ -32,6 +32,11 @@ FUNCTION int surface_after(int i, int count, vint surface, mask is_met)
     return (int)least_lane(SELECT(is_later, VFLOAT_OF(surface), SPLAT((float)count)));
 }
 
+/* Goes through the surfaces from number `first` on that some lane met. */
+#define FOR_SURFACES_MET(i, first, count, surface, is_met)                                         \
+    for (int i = surface_after((first)-1, count, surface, is_met); i < (count);                    \
+         i = surface_after(i, count, surface, is_met))
+
 /* The search of a packet's rays. */
 struct object_search {
     vfloat limit;     /* m: objects beyond do not matter */
@@ -170,10 +175,8 @@ NOINLINE struct nearest_hit walk_objects(GLOBAL const struct object_record *obje
     nearest.object = SPLAT_VINT(-1);
     if (!ANY(search->is_ray))
         return nearest;
-    struct vector3 relative;
-    relative.x = point.x - tree->middle_x;
-    relative.y = point.y - tree->middle_y;
-    relative.z = point.z - tree->middle_z;
+    const struct vector3 relative =
+        vector3_of(point.x - tree->middle_x, point.y - tree->middle_y, point.z - tree->middle_z);
     const mask is_far = ~MASK_OF(dot3(relative, relative) <= tree->farthest * tree->farthest);
     if (ANY(is_far & search->is_ray)) {
         test_all_objects(objects, count, point, direction, minimum, search, &nearest);

@@ -10,10 +10,10 @@
 #define RELIEF_LEAST_COSINE 1.0e-3f
 
 /* Returns the relief, which lies behind the records of all objects. */
-FUNCTION struct relief_view relief_of(const struct fan_record *fan,
-                                      GLOBAL const struct object_record *objects)
+FUNCTION struct relief_view relief_of(const struct trace *trace)
 {
-    GLOBAL const RECORD_WORD *words = (GLOBAL const RECORD_WORD *)objects + fan->relief_words;
+    GLOBAL const RECORD_WORD *words =
+        (GLOBAL const RECORD_WORD *)trace->objects + trace->fan.relief_words;
     struct relief_view relief;
     relief.grid = (GLOBAL const struct relief_record *)words;
     relief.heights = (GLOBAL const float *)(relief.grid + 1);
@@ -24,12 +24,12 @@ FUNCTION struct relief_view relief_of(const struct fan_record *fan,
 
 /* Returns the distance along each ray to the seabed beyond `minimum`, FAR_AWAY if there is none.
  * to_plane: distance to the mean plane, which lanes that are not wanted keep. */
-NOINLINE vfloat relief_distance(const struct fan_record *fan,
-                                GLOBAL const struct object_record *objects, struct vector3 point,
+NOINLINE vfloat relief_distance(const struct trace *trace, struct vector3 point,
                                 struct vector3 direction, vfloat minimum, vfloat to_plane,
                                 mask is_wanted)
 {
-    const struct relief_view relief = relief_of(fan, objects);
+    const struct fan_record *fan = &trace->fan;
+    const struct relief_view relief = relief_of(trace);
     const float rows = relief.grid->rows_per_metre;
     const float columns = relief.grid->columns_per_metre;
     const vfloat starts[3] = {(point.x - fan->relief_x) * rows, (point.y - fan->relief_y) * columns,
@@ -74,11 +74,11 @@ FUNCTION float slope_at(struct relief_view relief, float row, float column, int 
 }
 
 /* Returns the unit normals where rays have met the relief, on the side that the rays came from. */
-NOINLINE struct vector3 relief_normal(const struct fan_record *fan,
-                                      GLOBAL const struct object_record *objects,
-                                      struct vector3 point, struct vector3 direction)
+NOINLINE struct vector3 relief_normal(const struct trace *trace, struct vector3 point,
+                                      struct vector3 direction)
 {
-    const struct relief_view relief = relief_of(fan, objects);
+    const struct fan_record *fan = &trace->fan;
+    const struct relief_view relief = relief_of(trace);
     const vfloat row = (point.x - fan->relief_x) * relief.grid->rows_per_metre;
     const vfloat column = (point.y - fan->relief_y) * relief.grid->columns_per_metre;
     float rows[WIDTH], columns[WIDTH], slopes[2][WIDTH];
@@ -90,18 +90,11 @@ NOINLINE struct vector3 relief_normal(const struct fan_record *fan,
     const vfloat along = LOAD_VFLOAT(slopes[0]);
     const vfloat across = LOAD_VFLOAT(slopes[1]);
     const vfloat up = 1.0f / SQUARE_ROOT(along * along + across * across + 1.0f);
-    struct vector3 normal;
-    normal.x = -along * up;
-    normal.y = -across * up;
-    normal.z = up;
+    const struct vector3 normal = vector3_of(-along * up, -across * up, up);
     const vfloat lack = larger(RELIEF_LEAST_COSINE + dot3(normal, direction), SPLAT(0.0f));
     const struct vector3 bent = along3(normal, direction, -lack);
     const vfloat length = SQUARE_ROOT(dot3(bent, bent));
-    struct vector3 unit;
-    unit.x = bent.x / length;
-    unit.y = bent.y / length;
-    unit.z = bent.z / length;
-    return choose3(MASK_OF(lack > 0.0f), unit, normal);
+    return choose3(MASK_OF(lack > 0.0f), divided3(bent, length), normal);
 }
 
 #endif

@@ -10,11 +10,10 @@
 #include "path_ellipse.h"
 
 /* Returns the records of targets' parts, which lie behind the spheres and their groups. */
-FUNCTION GLOBAL const struct target_record *targets_of(GLOBAL const struct chain_record *chains,
-                                                       GLOBAL const struct sphere_record *spheres)
+FUNCTION GLOBAL const struct target_record *targets_of(const struct trace *trace)
 {
-    return (GLOBAL const struct target_record *)((GLOBAL const float *)spheres +
-                                                 chains->target_words);
+    return (GLOBAL const struct target_record *)((GLOBAL const float *)trace->spheres +
+                                                 trace->chains->target_words);
 }
 
 /* The cell in which a group of samples' echoes end. Ranges are those of half the path, less the
@@ -25,12 +24,11 @@ struct echo_cell {
 };
 
 /* Returns a cell of the output. */
-FUNCTION struct echo_cell cell_number(const struct fan_record *fan,
-                                      GLOBAL const struct chain_record *chains, vfloat number,
-                                      vfloat receiver_x)
+FUNCTION struct echo_cell cell_number(const struct trace *trace, vfloat number, vfloat receiver_x)
 {
-    const float bins = (float)chains->cell_bins;
-    const vfloat first = (number - 0.5f) * bins - (float)chains->first_bin;
+    const struct fan_record *fan = &trace->fan;
+    const float bins = (float)trace->chains->cell_bins;
+    const vfloat first = (number - 0.5f) * bins - (float)trace->chains->first_bin;
     const float metres = 1.0f / fan->bins_per_metre;
     struct echo_cell cell;
     cell.receiver_x = receiver_x;
@@ -114,39 +112,32 @@ FUNCTION struct sampled_target sample_target(GLOBAL const struct target_record *
 /* Returns the samples of a cell per m rad of a part's window and m^2 of the seabed's plan. length:
  * of the line across the track that a sample's place stands for. Along this line the seabed's x
  * moves twice as fast as the echo's. */
-FUNCTION vfloat density_of_samples(const struct fan_record *fan,
-                                   GLOBAL const struct chain_record *chains, vfloat weight,
+FUNCTION vfloat density_of_samples(const struct trace *trace, vfloat weight,
                                    const struct target_weights *weights, vfloat window,
                                    vfloat length)
 {
     const mask is_possible = MASK_OF(weight > 0.0f) & MASK_OF(length > 0.0f);
-    const vfloat area = 2.0f * fan->strip_width * window * length * weights->sum;
+    const vfloat area = 2.0f * trace->fan.strip_width * window * length * weights->sum;
     return SELECT(is_possible,
-                  (float)chains->cell_samples * weight * weights->share /
+                  (float)trace->chains->cell_samples * weight * weights->share /
                       SELECT(is_possible, area, SPLAT(1.0f)),
                   SPLAT(0.0f));
 }
 
 /* Returns the seabed under a point of the plan. */
-FUNCTION struct chain_hit seabed_below(const struct fan_record *fan,
-                                       GLOBAL const struct object_record *objects, vfloat x,
-                                       vfloat y, mask is_wanted)
+FUNCTION struct chain_hit seabed_below(const struct trace *trace, vfloat x, vfloat y,
+                                       mask is_wanted)
 {
     struct chain_hit hit;
-    hit.point.x = x;
-    hit.point.y = y;
-    hit.point.z = SPLAT(fan->seabed_height);
+    hit.point = vector3_of(x, y, SPLAT(trace->fan.seabed_height));
 #if HAS_RELIEF
-    if (has_relief(fan)) { /* rays start little above it, so that heights keep their digits */
+    if (has_relief(trace)) { /* rays start little above it, so that heights keep their digits */
         struct vector3 above = hit.point;
-        struct vector3 down;
-        above.z = above.z + (relief_of(fan, objects).grid->highest + 0.01f);
-        down.x = down.y = SPLAT(0.0f);
-        down.z = SPLAT(-1.0f);
-        hit.point.z = above.z - seabed_distance(fan, objects, above, down, SPLAT(0.0f), is_wanted);
+        const struct vector3 down = vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(-1.0f));
+        above.z = above.z + (relief_of(trace).grid->highest + 0.01f);
+        hit.point.z = above.z - seabed_distance(trace, above, down, SPLAT(0.0f), is_wanted);
     }
 #endif
-    (void)objects;
     hit.surface = VINT_OF(SPLAT((float)SEABED));
     hit.left_behind = VINT_OF(SPLAT(-1.0f));
     hit.is_hit = is_wanted;
@@ -172,15 +163,16 @@ FUNCTION struct places places_of_cell(const struct fan_record *fan, const struct
 
 /* Returns the share of an echo that counts for a ray from a target that met the seabed. Samples
  * count for the rest. */
-NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                             GLOBAL const struct sphere_record *spheres, const struct chain *chain)
+NOINLINE vfloat share_of_ray(const struct trace *trace, const struct chain *chain)
 {
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct chain_record *chains = trace->chains;
     const mask is_shared = chain->is_alive & ~chain->began_smooth &
                            MASK_OF(chain->first_surface >= 0) &
                            MASK_OF(chain->hit.surface == SEABED);
     if (!ANY(is_shared))
         return SPLAT(1.0f);
-    GLOBAL const struct target_record *targets = targets_of(chains, spheres);
+    GLOBAL const struct target_record *targets = targets_of(trace);
     GLOBAL const struct target_record *own = &targets[fan->target];
     const struct vector3 from = along3(chain->hit.point, chain->hit.back, chain->length);
     const vfloat receiver_x = receiver_of(chains, chain);
@@ -198,7 +190,7 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
     const vfloat towards_zero = VFLOAT_OF(VINT_OF(place));
     const vfloat number =
         towards_zero - SELECT(MASK_OF(towards_zero > place), SPLAT(1.0f), SPLAT(0.0f));
-    const struct echo_cell cell = cell_number(fan, chains, number, receiver_x);
+    const struct echo_cell cell = cell_number(trace, number, receiver_x);
     const struct target_weights weights =
         weigh_targets(targets + own->first_target, own->targets, &cell);
     const vfloat least_y = own->least_y - from.y;
@@ -208,7 +200,7 @@ NOINLINE vfloat share_of_ray(const struct fan_record *fan, GLOBAL const struct c
                             MASK_OF(number < (float)(own->first_cell + own->cells));
     const vfloat samples =
         SELECT(is_sampled,
-               density_of_samples(fan, chains, weight_of_target(own, &cell), &weights,
+               density_of_samples(trace, weight_of_target(own, &cell), &weights,
                                   SPLAT(own->width * own->elevations), length_of_place(&places, y)),
                SPLAT(0.0f));
     const vfloat opening =

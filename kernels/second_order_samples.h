@@ -15,17 +15,15 @@ struct way_to_seabed {
     mask is_facing;
 };
 
-FUNCTION struct way_to_seabed way_to_seabed(const struct fan_record *fan,
-                                            GLOBAL const struct object_record *objects, vfloat x,
-                                            vfloat y, const struct chain *chain)
+FUNCTION struct way_to_seabed way_to_seabed(const struct trace *trace, vfloat x, vfloat y,
+                                            const struct chain *chain)
 {
     const struct chain_hit *from = &chain->hit;
     const struct vector3 start = start_from(from);
     struct way_to_seabed found;
     struct chain_hit *to = &found.to;
-    *to = seabed_below(fan, objects, x, y, chain->is_alive);
-    to->normal =
-        seabed_normal(fan, objects, to->point, straight_path(minus3(to->point, start)).direction);
+    *to = seabed_below(trace, x, y, chain->is_alive);
+    to->normal = seabed_normal(trace, to->point, straight_path(minus3(to->point, start)).direction);
     /* The way ends as far over the seabed as rays start, so that the place does not hide itself. */
     found.way = straight_path(minus3(start_from(to), start));
     to->back = reversed3(found.way.direction);
@@ -38,24 +36,21 @@ FUNCTION struct way_to_seabed way_to_seabed(const struct fan_record *fan,
 
 /* Takes a chain from its hit on a target to a place of the seabed. samples: per m rad and m^2 of
  * the plan; rays: of the target's fan, per m rad, which may also find the path. */
-FUNCTION void step_to_seabed(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                             GLOBAL const struct object_record *objects,
-                             const struct way_to_seabed *found, vfloat samples, vfloat rays,
-                             struct chain *chain, struct outcome_record *outcome)
+FUNCTION void step_to_seabed(const struct trace *trace, const struct way_to_seabed *found,
+                             vfloat samples, vfloat rays, struct chain *chain)
 {
     const struct chain_hit *from = &chain->hit;
     const struct vector3 direction = found->way.direction;
-    const vfloat scattering = scattering_at(fan, chains, objects, from, direction);
+    const vfloat scattering = scattering_at(trace, from, direction);
     mask is_open = found->is_facing & MASK_OF(scattering > 0.0f);
-    outcome->queries += count_lanes(is_open);
-    is_open = is_open_way(fan, objects, from, direction, found->way.path, is_open);
+    trace->outcome->queries += count_lanes(is_open);
+    is_open = is_open_way(trace, from, direction, found->way.path, is_open);
     const vfloat opening = opening_of_plan(&found->to, found->way.spreading);
-    const vfloat density =
-        samples + rays * rough_density_at(fan, objects, from, direction) * opening;
-    chain->energy =
-        SELECT(is_open,
-               chain->energy * (scattering * found->leaving * opening * chains->finer[0] / density),
-               SPLAT(0.0f));
+    const vfloat density = samples + rays * rough_density_at(trace, from, direction) * opening;
+    chain->energy = SELECT(
+        is_open,
+        chain->energy * (scattering * found->leaving * opening * trace->chains->finer[0] / density),
+        SPLAT(0.0f));
     chain->length = SELECT(is_open, found->way.path, SPLAT(0.0f));
     chain->surface_before = from->surface;
     chain->hit = found->to;
@@ -74,36 +69,23 @@ enum sample_coordinate {
     SAMPLE_COORDINATES
 };
 
-/* The arguments by which a strip's samples are traced. */
-struct sample_trace {
-    const struct fan_record *fan;
-    GLOBAL const struct ray_piece_record *pieces;
-    GLOBAL const struct chain_record *chains;
-    GLOBAL const struct object_record *objects;
-    GLOBAL const struct sphere_record *spheres;
-    struct random_key key;
-    int strip;
-    RECORD_WORD shifts[SAMPLE_COORDINATES];
-};
-
-/* Draws the lattice's shift, by a draw that no sample has. */
-FUNCTION void draw_shifts(struct sample_trace *trace)
+/* Draws the lattice's shifts, by draws that no sample has. */
+FUNCTION void draw_shifts(struct random_key key, RECORD_WORD shifts[SAMPLE_COORDINATES])
 {
     for (int i = 0; i < SAMPLE_COORDINATES; i += 2) {
-        trace->shifts[i] = (RECORD_WORD)i;
-        trace->shifts[i + 1] = ~0u;
-        threefry_scalar(trace->key.first, trace->key.second, &trace->shifts[i],
-                        &trace->shifts[i + 1]);
+        shifts[i] = (RECORD_WORD)i;
+        shifts[i + 1] = ~0u;
+        threefry_scalar(key.first, key.second, &shifts[i], &shifts[i + 1]);
     }
 }
 
-FUNCTION vfloat sample_uniform(const struct sample_trace *trace, word number,
+FUNCTION vfloat sample_uniform(const RECORD_WORD *shifts, word number,
                                enum sample_coordinate coordinate)
 {
     const RECORD_WORD multipliers[SAMPLE_COORDINATES] = {LATTICE_OF_6_0, LATTICE_OF_6_1,
                                                          LATTICE_OF_6_2, LATTICE_OF_6_3,
                                                          LATTICE_OF_6_4, LATTICE_OF_6_5};
-    return lattice_uniform(number, multipliers[coordinate], trace->shifts[coordinate]);
+    return lattice_uniform(number, multipliers[coordinate], shifts[coordinate]);
 }
 
 /* The samples of a strip, one in each lane: their cells, and the weights of targets there. */
@@ -114,20 +96,20 @@ struct samples {
     mask is_followed;
 };
 
-FUNCTION struct samples aim_samples(const struct sample_trace *trace,
-                                    GLOBAL const struct target_record *targets, word sample)
+FUNCTION struct samples aim_samples(const struct trace *trace, const RECORD_WORD *shifts,
+                                    word sample)
 {
-    const struct fan_record *fan = trace->fan;
-    GLOBAL const struct chain_record *chains = trace->chains;
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct target_record *targets = targets_of(trace) + fan->target;
     struct samples samples;
     samples.number = SPLAT_WORD(fan->first_ray) + sample;
-    const vfloat along = sample_uniform(trace, samples.number, ECHO_ALONG);
-    samples.cell = cell_number(
-        fan, chains,
-        VFLOAT_OF(sample / (RECORD_WORD)chains->cell_samples) + (float)targets->first_cell,
-        strip_position(fan, trace->strip) + (along - 0.5f) * fan->strip_width);
+    const vfloat along = sample_uniform(shifts, samples.number, ECHO_ALONG);
+    samples.cell = cell_number(trace,
+                               VFLOAT_OF(sample / (RECORD_WORD)trace->chains->cell_samples) +
+                                   (float)targets->first_cell,
+                               strip_position(trace) + (along - 0.5f) * fan->strip_width);
     samples.weights = weigh_targets(targets, targets->targets, &samples.cell);
-    const vfloat followed = sample_uniform(trace, samples.number, IS_FOLLOWED);
+    const vfloat followed = sample_uniform(shifts, samples.number, IS_FOLLOWED);
     samples.is_followed = MASK_OF(sample < fan->rays) & MASK_OF(followed < samples.weights.share);
     return samples;
 }
@@ -140,23 +122,22 @@ struct second_order_path {
 };
 
 /* Finds the paths of samples. is_alone: the target is found whatever hides it. */
-NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mask is_sample,
-                              int is_alone, struct second_order_path *path)
+NOINLINE void path_of_samples(const struct trace *trace, const RECORD_WORD *shifts, word sample,
+                              mask is_sample, int is_alone, struct second_order_path *path)
 {
-    const struct fan_record *fan = trace->fan;
-    GLOBAL const struct target_record *targets =
-        targets_of(trace->chains, trace->spheres) + fan->target;
-    const struct samples samples = aim_samples(trace, targets, sample);
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct target_record *targets = targets_of(trace) + fan->target;
+    const struct samples samples = aim_samples(trace, shifts, sample);
     const word number = samples.number;
     const struct sampled_target target =
         sample_target(targets, targets->targets, &samples.cell, &samples.weights,
-                      sample_uniform(trace, number, TARGET_PART), is_sample & samples.is_followed);
+                      sample_uniform(shifts, number, TARGET_PART), is_sample & samples.is_followed);
     struct chain *chain = &path->chain;
-    const vfloat along = sample_uniform(trace, number, TARGET_ALONG);
-    const vfloat across = sample_uniform(trace, number, TARGET_ACROSS);
+    const vfloat along = sample_uniform(shifts, number, TARGET_ALONG);
+    const vfloat across = sample_uniform(shifts, number, TARGET_ACROSS);
     vfloat dither, unused;
     two_uniforms(trace->key, number, 0, &dither, &unused);
-    begin_chain(fan, trace->pieces, trace->objects, target.first_x + along * target.width,
+    begin_chain(trace, target.first_x + along * target.width,
                 target.first_elevation + across * target.elevations, SPLAT(1.0f),
                 is_alone ? &target.part : 0, is_sample & samples.is_followed, chain);
     chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == target.part);
@@ -168,13 +149,13 @@ NOINLINE void path_of_samples(const struct sample_trace *trace, word sample, mas
     const struct seabed_line line = line_across(fan, chain->hit.point, x, receiver_x);
     const struct places places =
         places_of_cell(fan, chain, &line, &samples.cell, target.least_y - chain->hit.point.y);
-    const vfloat y = sample_place(&places, sample_uniform(trace, number, SEABED_PLACE));
+    const vfloat y = sample_place(&places, sample_uniform(shifts, number, SEABED_PLACE));
     path->samples =
-        density_of_samples(fan, trace->chains, target.weight, &samples.weights,
-                           target.width * target.elevations, length_of_place(&places, y));
+        density_of_samples(trace, target.weight, &samples.weights, target.width * target.elevations,
+                           length_of_place(&places, y));
     path->rays = target.rays;
     chain->is_alive = chain->is_alive & MASK_OF(path->samples > 0.0f);
-    path->onward = way_to_seabed(fan, trace->objects, x, chain->hit.point.y + y, chain);
+    path->onward = way_to_seabed(trace, x, chain->hit.point.y + y, chain);
 }
 
 /* The samples that wait until every lane has one. */
@@ -200,77 +181,66 @@ FUNCTION mask take_waiting(struct waiting_samples *waiting, int numbers[WIDTH])
 }
 
 /* Takes samples that are followed, and keeps those whose target faces the place on the seabed. */
-FUNCTION void find_facing(const struct sample_trace *trace, struct waiting_samples *followed,
-                          struct waiting_samples *facing, struct outcome_record *outcome)
+FUNCTION void find_facing(const struct trace *trace, const RECORD_WORD *shifts,
+                          struct waiting_samples *followed, struct waiting_samples *facing)
 {
     int numbers[WIDTH];
     struct second_order_path path;
     const mask is_sample = take_waiting(followed, numbers);
-    outcome->rays += count_lanes(is_sample);
-    outcome->queries += count_lanes(is_sample);
-    path_of_samples(trace, AS_WORD(LOAD_VINT(numbers)), is_sample, 1, &path);
+    trace->outcome->rays += count_lanes(is_sample);
+    trace->outcome->queries += count_lanes(is_sample);
+    path_of_samples(trace, shifts, AS_WORD(LOAD_VINT(numbers)), is_sample, 1, &path);
     add_waiting(numbers, path.onward.is_facing, facing);
 }
 
 /* Traces some of the samples that face their seabed. */
-FUNCTION void trace_facing(const struct sample_trace *trace, GLOBAL const float *map,
-                           GLOBAL TALLY *tallies, struct waiting_samples *facing,
-                           struct outcome_record *outcome)
+FUNCTION void trace_facing(const struct trace *trace, const RECORD_WORD *shifts,
+                           struct waiting_samples *facing)
 {
     int numbers[WIDTH];
     struct second_order_path path;
     struct chain_echo echo;
     struct chain *chain = &path.chain;
     const mask is_sample = take_waiting(facing, numbers);
-    outcome->queries += count_lanes(is_sample);
-    path_of_samples(trace, AS_WORD(LOAD_VINT(numbers)), is_sample, 0, &path);
+    trace->outcome->queries += count_lanes(is_sample);
+    path_of_samples(trace, shifts, AS_WORD(LOAD_VINT(numbers)), is_sample, 0, &path);
     if (!ANY(path.onward.is_facing))
         return;
-    step_to_seabed(trace->fan, trace->chains, trace->objects, &path.onward, path.samples, path.rays,
-                   chain, outcome);
+    step_to_seabed(trace, &path.onward, path.samples, path.rays, chain);
     if (!ANY(chain->is_alive))
         return;
     struct ways_counted ways;
     ways.is_counted = ways.counts_reverse = chain->is_alive;
     vfloat range;
-    const vfloat energy =
-        energy_returned(trace->fan, trace->pieces, trace->chains, trace->objects, map, chain,
-                        receiver_of(trace->chains, chain), 0, 3, chain->is_alive, &range, outcome);
-    keep_echo(trace->fan, trace->chains, ways, chain, energy, range, SPLAT(1.0f), &echo);
-    tally_chain_echo(trace->fan, trace->chains, tallies, 2, &echo, outcome);
+    const vfloat energy = energy_returned(trace, chain, receiver_of(trace->chains, chain), 0, 3,
+                                          chain->is_alive, &range);
+    keep_echo(trace, ways, chain, energy, range, SPLAT(1.0f), &echo);
+    tally_chain_echo(trace, 2, &echo);
 }
 
 /* Traces the share `segment` of a strip's samples. fan->rays tells their number. */
-NOINLINE void trace_second_order_strip(const struct fan_record *fan,
-                                       GLOBAL const struct ray_piece_record *pieces,
-                                       GLOBAL const struct chain_record *chains,
-                                       GLOBAL const struct object_record *objects,
-                                       GLOBAL const struct sphere_record *spheres,
-                                       GLOBAL const float *map, GLOBAL TALLY *tallies, int strip,
-                                       int segment, struct outcome_record *outcome)
+NOINLINE void trace_second_order_strip(const struct trace *trace)
 {
-    struct sample_trace trace = {fan,   pieces, chains, objects, spheres, key_of_strip(fan, strip),
-                                 strip, {0}};
-    GLOBAL const struct target_record *targets = targets_of(chains, spheres) + fan->target;
+    RECORD_WORD shifts[SAMPLE_COORDINATES];
     struct waiting_samples followed, facing;
-    draw_shifts(&trace);
+    draw_shifts(trace->key, shifts);
     followed.count = facing.count = 0;
     int is_over = 0;
-    for (RECORD_WORD first = first_ray_of_item(segment); !is_over; first += ray_step(fan)) {
-        is_over = first >= fan->rays;
+    for (RECORD_WORD first = first_ray_of_item(trace); !is_over; first += ray_step(trace)) {
+        is_over = first >= trace->fan.rays;
         if (!is_over) {
             int numbers[WIDTH];
             for (int lane = 0; lane < WIDTH; lane++)
                 numbers[lane] = (int)first + lane;
             add_waiting(numbers,
-                        aim_samples(&trace, targets, SPLAT_WORD(first) + LANE_NUMBERS).is_followed,
+                        aim_samples(trace, shifts, SPLAT_WORD(first) + LANE_NUMBERS).is_followed,
                         &followed);
         }
         const int least = is_over ? 1 : WIDTH; /* the last samples may be fewer */
         while (followed.count >= least)
-            find_facing(&trace, &followed, &facing, outcome);
+            find_facing(trace, shifts, &followed, &facing);
         while (facing.count >= least)
-            trace_facing(&trace, map, tallies, &facing, outcome);
+            trace_facing(trace, shifts, &facing);
     }
 }
 

@@ -17,11 +17,8 @@ struct target_sampling {
 
 FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, struct vector3 point)
 {
-    struct vector3 way;
-    way.x = sphere->centre_x - point.x;
-    way.y = sphere->centre_y - point.y;
-    way.z = sphere->centre_z - point.z;
-    return way;
+    return vector3_of(sphere->centre_x - point.x, sphere->centre_y - point.y,
+                      sphere->centre_z - point.z);
 }
 
 /* Returns the opening of a sphere at a distance, 0 if that is not outside. */
@@ -72,10 +69,7 @@ FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count
 FUNCTION struct vector3 direction_in_cone(struct vector3 way, vfloat opening, vfloat u, vfloat v)
 {
     const vfloat inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
-    struct vector3 axis;
-    axis.x = way.x * inverse;
-    axis.y = way.y * inverse;
-    axis.z = way.z * inverse;
+    const struct vector3 axis = scaled3(way, inverse);
     const vfloat fall = u * opening; /* 1 - cosine */
     const vfloat sine = SQUARE_ROOT(fall * (2.0f - fall));
     vfloat sine_about, cosine_about;
@@ -94,10 +88,7 @@ FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_recor
     const vfloat wanted = choice * cones->sum;
     vfloat before = SPLAT(0.0f);
     vfloat opening = SPLAT(0.0f);
-    struct vector3 way;
-    way.x = SPLAT(0.0f);
-    way.y = SPLAT(0.0f);
-    way.z = SPLAT(1.0f);
+    struct vector3 way = vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(1.0f));
     for (int i = 0; i < count; i++) {
         const mask is_next = MASK_OF(before <= wanted) & MASK_OF(cones->openings[i] > 0.0f);
         way = choose3(is_next, to_sphere(&spheres[i], point), way);

@@ -9,31 +9,26 @@
 #include "second_order_samples.h"
 
 /* Connects the hit to the source and returns the echo in *echo. */
-FUNCTION void connect_chain(const struct fan_record *fan,
-                            GLOBAL const struct ray_piece_record *pieces,
-                            GLOBAL const struct chain_record *chains,
-                            GLOBAL const struct object_record *objects,
-                            GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
-                            int order, const struct chain *chain, RECORD_WORD draw,
-                            struct chain_echo *echo, struct outcome_record *outcome)
+FUNCTION void connect_chain(const struct trace *trace, int order, const struct chain *chain,
+                            RECORD_WORD draw, struct chain_echo *echo)
 {
+    GLOBAL const struct chain_record *chains = trace->chains;
     vfloat range;
     const vfloat energy =
-        energy_returned(fan, pieces, chains, objects, map, chain, receiver_of(chains, chain), 0,
-                        draw, chain->is_alive, &range, outcome);
-    const vfloat share = order == 2 && chains->cell_samples > 0
-                             ? share_of_ray(fan, chains, spheres, chain)
-                             : SPLAT(1.0f);
-    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, share, echo);
+        energy_returned(trace, chain, receiver_of(chains, chain), 0, draw, chain->is_alive, &range);
+    const vfloat share =
+        order == 2 && chains->cell_samples > 0 ? share_of_ray(trace, chain) : SPLAT(1.0f);
+    keep_echo(trace, count_ways(chains, order, chain), chain, energy, range, share, echo);
 }
 
 /* Finds the echo of brute force, which counts rays that happen to cross the source's square. Per
  * unit of the source's strength, a square of area A seen under the angle theta stands for 1 / (A
  * cos theta). */
-FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                            int order, const struct chain *chain, const struct chain_step *step,
-                            vfloat to_next_hit, struct chain_echo *echo)
+FUNCTION void count_arrival(const struct trace *trace, int order, const struct chain *chain,
+                            const struct chain_step *step, vfloat to_next_hit,
+                            struct chain_echo *echo)
 {
+    const struct fan_record *fan = &trace->fan;
     const struct vector3 to = to_receiver(fan, chain->hit.point, chain->first_x);
     /* The square's normal is the central direction, and across it lies `up`. */
     const vfloat cosine =
@@ -57,109 +52,97 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const vfloat range = 0.5f * (chain->range + chain->length + (path - fan->reference_range));
     const vfloat half_path = fan->reference_range + range;
     const vfloat square = half_path * half_path;
-    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, square * square,
+    keep_echo(trace, count_ways(trace->chains, order, chain), chain, energy, range, square * square,
               echo);
 }
 
 #define THIN_BLOCK 64u /* rays that are followed, or not, together; the same at any width */
 
 /* Returns the ray in the middle of each of WIDTH blocks. */
-FUNCTION struct fan_ray middle_ray(const struct fan_record *fan,
-                                   GLOBAL const struct ray_piece_record *pieces, int strip,
-                                   word block)
+FUNCTION struct fan_ray middle_ray(const struct trace *trace, word block)
 {
+    const struct fan_record *fan = &trace->fan;
     const vfloat rays = (VFLOAT_OF(block) + 0.5f) * (float)THIN_BLOCK;
-    return fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
+    return fan_ray_at(trace, SPLAT(strip_position(trace)),
                       fan->first_elevation + rays * fan->elevation_step);
 }
 
 /* Returns where rays of a block may meet a target: its middle ray passes a target's sphere within
  * the radius plus the distance of the block's corners (a tenth more: rays fan out). */
-FUNCTION mask may_meet_target(const struct fan_record *fan,
-                              GLOBAL const struct chain_record *chains,
-                              GLOBAL const struct sphere_record *spheres,
-                              const struct fan_ray *middle)
+FUNCTION mask may_meet_target(const struct trace *trace, const struct fan_ray *middle)
 {
+    const struct fan_record *fan = &trace->fan;
     const vfloat up = 0.5f * (float)THIN_BLOCK * fan->elevation_step * middle->wavefront;
     const vfloat margin = 1.1f * (0.5f * fan->strip_width + magnitude(up));
     mask may_meet = MASK_OF(margin < 0.0f);
-    for (int i = 0; i < chains->spheres; i++) {
-        const struct vector3 way = to_sphere(&spheres[i], middle->closest);
+    for (int i = 0; i < trace->chains->spheres; i++) {
+        const struct vector3 way = to_sphere(&trace->spheres[i], middle->closest);
         const vfloat along = dot3(way, middle->direction);
         const struct vector3 miss = along3(way, middle->direction, -along);
-        const vfloat reach = spheres[i].radius * 1.001f + margin;
+        const vfloat reach = trace->spheres[i].radius * 1.001f + margin;
         may_meet = may_meet | MASK_OF(dot3(miss, miss) < reach * reach);
     }
     return may_meet;
 }
 
 /* Returns where rays of a block that the seabed reflects at a point may meet a target. */
-FUNCTION mask may_be_reflected_to_target(const struct fan_record *fan,
-                                         GLOBAL const struct chain_record *chains,
-                                         GLOBAL const struct sphere_record *spheres,
-                                         const struct fan_ray *middle, struct vector3 point)
+FUNCTION mask may_be_reflected_to_target(const struct trace *trace, const struct fan_ray *middle,
+                                         struct vector3 point)
 {
     struct fan_ray reflected = *middle;
     reflected.closest = point;
     reflected.direction.z = -middle->direction.z;
-    return may_meet_target(fan, chains, spheres, &reflected);
+    return may_meet_target(trace, &reflected);
 }
 
 /* Returns the throughput of each of WIDTH blocks, 0 if its rays are not followed. Seabed far from
  * the targets exchanges little sound with them unless it reflects. Only some blocks of such rays
  * are followed and stand for the others. An object's own rays are left out in blocks that cannot
  * meet a target. */
-FUNCTION vfloat russian_roulette(const struct fan_record *fan,
-                                 GLOBAL const struct ray_piece_record *pieces,
-                                 GLOBAL const struct chain_record *chains,
-                                 GLOBAL const struct object_record *objects,
-                                 GLOBAL const struct sphere_record *spheres, struct random_key key,
-                                 int strip, word block)
+FUNCTION vfloat russian_roulette(const struct trace *trace, word block)
 {
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct chain_record *chains = trace->chains;
     const int begins_on_seabed = fan->only_object == -1;
     if (fan->only_object < -1 || (begins_on_seabed && chains->seabed_share == 0.0f) ||
         (!begins_on_seabed && chains->spheres == 0))
         return SPLAT(1.0f);
-    const struct fan_ray middle = middle_ray(fan, pieces, strip, block);
+    const struct fan_ray middle = middle_ray(trace, block);
     if (!begins_on_seabed)
-        return SELECT(may_meet_target(fan, chains, spheres, &middle), SPLAT(1.0f), SPLAT(0.0f));
+        return SELECT(may_meet_target(trace, &middle), SPLAT(1.0f), SPLAT(0.0f));
     const vfloat to_seabed =
-        seabed_distance(fan, objects, middle.closest, middle.direction,
-                        SPLAT(-fan->reference_range), MASK_OF(block < fan->rays));
+        seabed_distance(trace, middle.closest, middle.direction, SPLAT(-fan->reference_range),
+                        MASK_OF(block < fan->rays));
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
         along3(middle.closest, middle.direction, SELECT(is_seabed, to_seabed, SPLAT(0.0f)));
     mask is_inside;
-    const vfloat sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
+    const vfloat sum = sum_of_openings(trace->spheres, chains->spheres, point, &is_inside);
     vfloat share = SELECT(is_inside | ~is_seabed, SPLAT(1.0f),
                           smaller(chains->seabed_share * sum, SPLAT(1.0f)));
     if (has_smooth_part(&chains->seabed))
-        share = SELECT(may_be_reflected_to_target(fan, chains, spheres, &middle, point),
-                       SPLAT(1.0f), share);
+        share = SELECT(may_be_reflected_to_target(trace, &middle, point), SPLAT(1.0f), share);
     vfloat chosen, unused;
-    two_uniforms(key, block, 1, &chosen, &unused);
+    two_uniforms(trace->key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
     return SELECT(is_followed, 1.0f / SELECT(is_followed, share, SPLAT(1.0f)), SPLAT(0.0f));
 }
 
 /* Sends out one group of a fan's rays. */
-FUNCTION void begin_fan_chain(const struct fan_record *fan,
-                              GLOBAL const struct ray_piece_record *pieces,
-                              GLOBAL const struct object_record *objects, int strip,
-                              struct random_key key, RECORD_WORD first_ray, float throughput,
+FUNCTION void begin_fan_chain(const struct trace *trace, RECORD_WORD first_ray, float throughput,
                               const struct target_choice *choice, struct chain *chain)
 {
+    const struct fan_record *fan = &trace->fan;
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    const vfloat along = lattice_uniform(number, LATTICE_OF_2_1, key.first);
+    const vfloat along = lattice_uniform(number, LATTICE_OF_2_1, trace->key.first);
     vfloat across, dither;
-    two_uniforms(key, number, 0, &across, &dither);
-    begin_chain(fan, pieces, objects,
-                strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
+    two_uniforms(trace->key, number, 0, &across, &dither);
+    begin_chain(trace, strip_position(trace) + (along - 0.5f) * fan->strip_width,
                 fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step,
                 SPLAT(throughput * fan->strip_width * fan->elevation_step), 0,
                 MASK_OF(number < fan->rays), chain);
     chain->choice = choice;
-    chain->key = key;
+    chain->key = trace->key;
     chain->number = number;
     chain->dither = dither;
     if (fan->only_object >= -1)
@@ -184,59 +167,52 @@ FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *st
 
 /* Returns the lowest order of the fan's rays that counts. Paths of two interactions that begin on
  * the seabed may have samples of their own. */
-FUNCTION int first_order_of_fan(const struct fan_record *fan,
-                                GLOBAL const struct chain_record *chains)
+FUNCTION int first_order_of_fan(const struct trace *trace)
 {
-    return fan->only_object == SEABED && chains->cell_samples > 0 ? 3 : chains->first_order;
+    return trace->fan.only_object == SEABED && trace->chains->cell_samples > 0
+               ? 3
+               : trace->chains->first_order;
 }
 
 /* Follows one group of WIDTH rays of a strip over all their interactions. */
-FUNCTION void trace_chain_group(const struct fan_record *fan,
-                                GLOBAL const struct ray_piece_record *pieces,
-                                GLOBAL const struct chain_record *chains,
-                                GLOBAL const struct object_record *objects,
-                                GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
-                                GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float throughput,
-                                const struct target_choice *choice, struct outcome_record *outcome)
+FUNCTION void trace_chain_group(const struct trace *trace, RECORD_WORD first_ray, float throughput,
+                                const struct target_choice *choice)
 {
+    GLOBAL const struct chain_record *chains = trace->chains;
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    const int first_order = first_order_of_fan(fan, chains);
-    begin_fan_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
+    const int first_order = first_order_of_fan(trace);
+    begin_fan_chain(trace, first_ray, throughput, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         /* An interaction has four draws: 0 and 1 for its step, 2 and 3 for its connections. */
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= first_order) {
-            connect_chain(fan, pieces, chains, objects, spheres, map, order, &chain, draw + 2,
-                          &echo, outcome);
-            tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
+            connect_chain(trace, order, &chain, draw + 2, &echo);
+            tally_chain_echo(trace, order, &echo);
         }
         if (is_connected && has_sea_surface(chains))
-            connect_by_sea_surface(fan, pieces, chains, objects, map, tallies, order, &chain,
-                                   draw + 3, outcome);
+            connect_by_sea_surface(trace, order, &chain, draw + 3);
         if (is_connected && order == chains->interactions)
             break;
-        const struct chain_step step =
-            next_step(fan, pieces, chains, objects, spheres, map, order, &chain, draw);
+        const struct chain_step step = next_step(trace, order, &chain, draw);
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
-        outcome->queries += count_lanes(goes_on);
+        trace->outcome->queries += count_lanes(goes_on);
         struct chain_hit next =
-            find_chain_hit(fan, objects, FACE_OF_SCATTERING, start_from(&chain.hit), step.direction,
-                           0.0f, chain.hit.left_behind, goes_on);
+            find_chain_hit(trace, FACE_OF_SCATTERING, start_from(&chain.hit), step.direction, 0.0f,
+                           chain.hit.left_behind, goes_on);
         if (has_sea_surface(chains))
             meet_sea_surface(chains, start_from(&chain.hit), step.direction, goes_on, &next);
         if (!is_connected) {
             const vfloat clear =
                 SELECT(next.is_hit, next.distance, SELECT(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
-            count_arrival(fan, chains, order, &chain, &step, clear, &echo);
-            tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
+            count_arrival(trace, order, &chain, &step, clear, &echo);
+            tally_chain_echo(trace, order, &echo);
         }
         /* Sound from one slope of the relief to another is left out. */
         const mask is_between_slopes =
-            has_relief(fan) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
-                            : chain.is_alive & 0;
+            has_relief(trace) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
+                              : chain.is_alive & 0;
         if (order == 1) {
             chain.began_smooth = step.is_specular;
             chain.first_density = step.density;
@@ -251,7 +227,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         chain.is_alive = next.is_hit & ~is_between_slopes;
         chain.met_object = chain.met_object | MASK_OF(next.surface >= 0);
         if (has_sea_surface(chains))
-            leave_out_unheard(fan, pieces, chains, order, &chain);
+            leave_out_unheard(trace, order, &chain);
     }
 }
 
@@ -259,13 +235,12 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
 
 /* Aims the choice of the rays from first_ray on: the targets as the middle ray sees them from the
  * seabed, blurred by the rays' distance from each other. */
-FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-                         GLOBAL const struct chain_record *chains,
-                         GLOBAL const struct sphere_record *spheres, int strip,
-                         RECORD_WORD first_ray, struct target_choice *choice)
+FUNCTION void aim_choice(const struct trace *trace, RECORD_WORD first_ray,
+                         struct target_choice *choice)
 {
+    const struct fan_record *fan = &trace->fan;
     const vfloat number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
-    const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
+    const struct fan_ray middle = fan_ray_at(trace, SPLAT(strip_position(trace)),
                                              fan->first_elevation + number * fan->elevation_step);
     const vfloat to_seabed = plane_distance(fan, middle.closest, middle.direction);
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
@@ -283,70 +258,52 @@ FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_p
     choice->y = y[0];
     choice->z = z[0];
     choice->square_blur = blur[0];
-    begin_choice(chains, spheres, choice);
+    begin_choice(trace, choice);
 }
 
 /* Follows the block of rays that begins with first_ray. */
-FUNCTION void trace_chain_block(const struct fan_record *fan,
-                                GLOBAL const struct ray_piece_record *pieces,
-                                GLOBAL const struct chain_record *chains,
-                                GLOBAL const struct object_record *objects,
-                                GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
-                                GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float throughput,
-                                struct outcome_record *outcome)
+FUNCTION void trace_chain_block(const struct trace *trace, RECORD_WORD first_ray, float throughput)
 {
     struct target_choice choice;
-    const int is_shared = chains->groups > 0 && fan->only_object == -1;
-    const RECORD_WORD count = rays_from(fan, first_ray, THIN_BLOCK);
+    const int is_shared = trace->chains->groups > 0 && trace->fan.only_object == -1;
+    const RECORD_WORD count = rays_from(trace, first_ray, THIN_BLOCK);
     const RECORD_WORD first = GROUP_ITEM * WIDTH;
     for (RECORD_WORD ray = first; ray < count; ray += GROUP_WIDTH) {
         if (is_shared && (ray % CHOICE_RAYS == 0 || ray == first))
-            aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray - ray % CHOICE_RAYS,
-                       &choice);
-        trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                          first_ray + ray, throughput, is_shared ? &choice : 0, outcome);
+            aim_choice(trace, first_ray + ray - ray % CHOICE_RAYS, &choice);
+        trace_chain_group(trace, first_ray + ray, throughput, is_shared ? &choice : 0);
     }
 }
 
-/* Traces the share `segment` of a strip's fan, or of a target's second-order paths. tallies: orders
- * x tally_strips x bins; throughputs: room for GROUP_WIDTH, shared by the group's items. */
-FUNCTION struct outcome_record trace_chains_strip(
-    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects,
-    GLOBAL const struct sphere_record *spheres, GLOBAL const float *map, GLOBAL TALLY *tallies,
-    GROUP_MEMORY float *throughputs, int strip, int segment)
+/* Traces the segment of the strip's fan, or of a target's second-order paths. tallies: orders x
+ * tally_strips x bins, shared by all groups, since echoes end in other strips too. */
+FUNCTION void trace_chains_strip(const struct trace *trace)
 {
-    struct outcome_record outcome = {0, 0, 0, 0};
+    const struct fan_record *fan = &trace->fan;
+    GROUP_MEMORY float *throughputs = trace->throughputs;
     if (fan->is_sample) {
-        trace_second_order_strip(fan, pieces, chains, objects, spheres, map, tallies, strip,
-                                 segment, &outcome);
-        return outcome;
+        trace_second_order_strip(trace);
+        return;
     }
-    const struct random_key key = key_of_strip(fan, strip);
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments;
     const RECORD_WORD own = GROUP_ITEM * WIDTH;
-    for (RECORD_WORD some = (RECORD_WORD)segment; some < blocks; some += stride * GROUP_WIDTH) {
+    for (RECORD_WORD some = (RECORD_WORD)trace->segment; some < blocks;
+         some += stride * GROUP_WIDTH) {
         const word mine = SPLAT_WORD(some) + (SPLAT_WORD(own) + LANE_NUMBERS) * stride;
-        const vfloat throughput =
-            russian_roulette(fan, pieces, chains, objects, spheres, key, strip, mine);
+        const vfloat throughput = russian_roulette(trace, mine);
         STORE_VFLOAT(throughput, throughputs + own);
         GROUP_WAIT();
         for (RECORD_WORD i = 0; i < GROUP_WIDTH && some + i * stride < blocks; i++) {
             const RECORD_WORD first_ray = (some + i * stride) * THIN_BLOCK;
             /* Rays that are known to miss their object count as traced. */
-            if (GROUP_ITEM == 0 && (throughputs[i] > 0.0f || fan->only_object >= 0)) {
-                outcome.rays += rays_from(fan, first_ray, THIN_BLOCK);
-                outcome.queries += rays_from(fan, first_ray, THIN_BLOCK);
-            }
+            if (GROUP_ITEM == 0 && (throughputs[i] > 0.0f || fan->only_object >= 0))
+                count_rays(trace, first_ray, THIN_BLOCK);
             if (throughputs[i] > 0.0f)
-                trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                  first_ray, throughputs[i], &outcome);
+                trace_chain_block(trace, first_ray, throughputs[i]);
         }
         GROUP_WAIT();
     }
-    return outcome;
 }
 
 #endif

@@ -6,7 +6,6 @@
 
 #include "chain_echo.h"
 #include "curvature.h"
-#include "image_sources.h"
 #include "trace_smooth.h"
 #include "tube.h"
 
@@ -29,9 +28,9 @@ FUNCTION struct return_path return_through_layers(GLOBAL const struct source_rec
         find_ray_to(source->table, pieces, source->cosine_depression, source->sine_depression,
                     hit.y + off * off / (ground + broadside), hit.z);
     struct return_path returned;
-    returned.direction.x = ray.directions.away_y * off / ground;
-    returned.direction.y = -ray.directions.away_y * broadside / ground;
-    returned.direction.z = -ray.directions.away_z;
+    returned.direction =
+        vector3_of(ray.directions.away_y * off / ground,
+                   -ray.directions.away_y * broadside / ground, -ray.directions.away_z);
     returned.length = ray.wavefront;
     returned.excess = ray.range;
     returned.spreading = SQUARE_ROOT(ray.spreading / (ground * ray.wavefront));
@@ -51,9 +50,9 @@ FUNCTION struct return_path return_path(GLOBAL const struct source_record *sourc
     returned.length = SQUARE_ROOT(range * range + change);
     returned.excess = change / (returned.length + range);
     returned.spreading = 1.0f / returned.length;
-    returned.direction.x = off * returned.spreading;
-    returned.direction.y = -(range * source->cosine_depression + hit.y) * returned.spreading;
-    returned.direction.z = (range * source->sine_depression - hit.z) * returned.spreading;
+    returned.direction = vector3_of(
+        off * returned.spreading, -(range * source->cosine_depression + hit.y) * returned.spreading,
+        (range * source->sine_depression - hit.z) * returned.spreading);
     return returned;
 }
 
@@ -77,25 +76,22 @@ struct multibounce_echo {
     int strip[WIDTH];
 };
 
-FUNCTION void begin_multibounce(const struct fan_record *fan,
-                                GLOBAL const struct image_pair_record *pair,
-                                GLOBAL const struct object_record *objects,
-                                const struct wavefront_cell *cell, struct multibounce_path *path,
-                                struct outcome_record *outcome)
+FUNCTION void begin_multibounce(const struct trace *trace, const struct wavefront_cell *cell,
+                                struct multibounce_path *path)
 {
-    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct object_record *object = &trace->objects[fan->only_object];
     const struct fan_ray *ray = &cell->ray;
-    const struct image_hit first =
-        find_image_hit(fan, pair, objects, FACE_OF_OPTICS, ray, cell->is_ray);
+    const struct image_hit first = find_image_hit(trace, FACE_OF_OPTICS, ray, cell->is_ray);
     path->first_wavefront = ray->wavefront + (first.range - ray->range_at_closest);
     path->hit.point = first.point;
     path->hit.normal = first.normal;
     path->hit.back = reversed3(ray->direction);
     path->hit.surface = VINT_OF(SPLAT((float)fan->only_object));
     path->hit.left_behind = is_convex(object) ? path->hit.surface : VINT_OF(SPLAT(-1.0f));
-    const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start_from(&path->hit),
+    const struct leg out = follow_leg(trace, &trace->pair->outgoing, start_from(&path->hit),
                                       path->hit.back, path->first_wavefront, first.is_hit);
-    outcome->queries += count_lanes(first.is_hit);
+    trace->outcome->queries += count_lanes(first.is_hit);
     path->is_alive = out.is_open;
     path->hit.is_hit = out.is_open;
     path->reflection_real = out.reflection_real;
@@ -111,30 +107,25 @@ FUNCTION void begin_multibounce(const struct fan_record *fan,
         path->first_spreading = SQUARE_ROOT(ray->spreading / (ground * path->first_wavefront));
     }
     const vfloat inverse = 1.0f / path->first_wavefront;
-    path->tube.along.offset.x = SPLAT(1.0f);
-    path->tube.along.offset.y = path->tube.along.offset.z = SPLAT(0.0f);
-    path->tube.along.turn.x = path->tube.along.turn.y = path->tube.along.turn.z = SPLAT(0.0f);
+    path->tube.along.offset = vector3_of(SPLAT(1.0f), SPLAT(0.0f), SPLAT(0.0f));
+    path->tube.along.turn = zero3();
     path->tube.across.offset = ray->upward;
-    path->tube.across.turn.x = SPLAT(0.0f);
-    path->tube.across.turn.y = ray->upward.y * inverse;
-    path->tube.across.turn.z = ray->upward.z * inverse;
+    path->tube.across.turn =
+        vector3_of(SPLAT(0.0f), ray->upward.y * inverse, ray->upward.z * inverse);
 }
 
 /* Finds the coherent reflection of the surfaces where the paths are. Paths end on a surface without
  * a smooth part. */
-FUNCTION void reflection_of_hit(const struct fan_record *fan,
-                                GLOBAL const struct multibounce_record *multibounce,
-                                GLOBAL const struct object_record *objects,
-                                const struct chain_hit *hit, vfloat cosine, mask *is_alive,
-                                vfloat *real_part, vfloat *imaginary_part)
+FUNCTION void reflection_of_hit(const struct trace *trace, const struct chain_hit *hit,
+                                vfloat cosine, mask *is_alive, vfloat *real_part,
+                                vfloat *imaginary_part)
 {
     *real_part = SPLAT(0.0f);
     *imaginary_part = SPLAT(0.0f);
     mask is_smooth = *is_alive & 0;
-    for (int i = surface_after(SEABED - 1, fan->objects, hit->surface, *is_alive); i < fan->objects;
-         i = surface_after(i, fan->objects, hit->surface, *is_alive)) {
+    FOR_SURFACES_MET (i, SEABED, trace->fan.objects, hit->surface, *is_alive) {
         GLOBAL const struct surface_record *surface =
-            i < 0 ? &multibounce->seabed : &objects[i].surface;
+            i < 0 ? &trace->multibounce->seabed : &trace->objects[i].surface;
         const mask here = *is_alive & MASK_OF(hit->surface == i);
         if (!has_smooth_part(surface) || !ANY(here))
             continue;
@@ -148,36 +139,29 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
 }
 
 /* Bounces off the hit and follows the way to the next one. */
-FUNCTION void bounce_on(const struct fan_record *fan,
-                        GLOBAL const struct multibounce_record *multibounce,
-                        GLOBAL const struct object_record *objects, struct multibounce_path *path,
-                        struct outcome_record *outcome)
+FUNCTION void bounce_on(const struct trace *trace, struct multibounce_path *path)
 {
     const struct chain_hit *hit = &path->hit;
     const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
     const struct vector3 came = reversed3(hit->back);
     vfloat one_real, one_imaginary;
-    reflection_of_hit(fan, multibounce, objects, hit, cosine, &path->is_alive, &one_real,
-                      &one_imaginary);
+    reflection_of_hit(trace, hit, cosine, &path->is_alive, &one_real, &one_imaginary);
     if (!ANY(path->is_alive))
         return;
     const vfloat was_real = path->reflection_real;
     path->reflection_real = was_real * one_real - path->reflection_imaginary * one_imaginary;
     path->reflection_imaginary = was_real * one_imaginary + path->reflection_imaginary * one_real;
-    struct vector3 nothing;
-    nothing.x = nothing.y = nothing.z = SPLAT(0.0f);
     struct tube_side *sides[2];
     sides[0] = &path->tube.along;
     sides[1] = &path->tube.across;
     for (int i = 0; i < 2; i++) {
         const struct vector3 shift = offset_on_surface(sides[i], came, hit->normal, cosine);
-        reflect_side(sides[i], came, hit->normal, cosine,
-                     normal_change_at(objects, fan->objects, hit, shift));
+        reflect_side(sides[i], came, hit->normal, cosine, normal_change_at(trace, hit, shift));
     }
     const struct vector3 direction = reflected3(came, hit->normal);
-    outcome->queries += count_lanes(path->is_alive);
-    const struct chain_hit next = find_chain_hit(fan, objects, FACE_OF_OPTICS, start_from(hit),
-                                                 direction, 0.0f, hit->left_behind, path->is_alive);
+    trace->outcome->queries += count_lanes(path->is_alive);
+    const struct chain_hit next = find_chain_hit(trace, FACE_OF_OPTICS, start_from(hit), direction,
+                                                 0.0f, hit->left_behind, path->is_alive);
     turn_by_caustics(&path->tube, direction, next.distance, &path->reflection_real,
                      &path->reflection_imaginary);
     transfer_tube(&path->tube, next.distance);
@@ -187,8 +171,8 @@ FUNCTION void bounce_on(const struct fan_record *fan,
     path->is_alive = next.is_hit & is_narrow(&path->tube);
     /* Paths that have ended stay finite. */
     for (int i = 0; i < 2; i++) {
-        sides[i]->offset = choose3(path->is_alive, sides[i]->offset, nothing);
-        sides[i]->turn = choose3(path->is_alive, sides[i]->turn, nothing);
+        sides[i]->offset = choose3(path->is_alive, sides[i]->offset, zero3());
+        sides[i]->turn = choose3(path->is_alive, sides[i]->turn, zero3());
     }
 }
 
@@ -211,45 +195,41 @@ FUNCTION vfloat path_gradient(const struct multibounce_path *path, const struct 
 }
 
 /* Keeps the echo that the last hit returns by physical optics. */
-FUNCTION void keep_multibounce_echo(const struct fan_record *fan,
-                                    GLOBAL const struct ray_piece_record *pieces,
-                                    GLOBAL const struct image_pair_record *pair,
-                                    GLOBAL const struct multibounce_record *multibounce,
-                                    GLOBAL const struct object_record *objects,
-                                    const struct wavefront_cell *cell,
+FUNCTION void keep_multibounce_echo(const struct trace *trace, const struct wavefront_cell *cell,
                                     const struct multibounce_path *path,
-                                    struct multibounce_echo *kept, struct outcome_record *outcome)
+                                    struct multibounce_echo *kept)
 {
+    const struct fan_record *fan = &trace->fan;
     const struct chain_hit *hit = &path->hit;
     const vfloat last_x = SELECT(path->is_alive, hit->point.x, path->first_x);
     const vfloat receiver_x =
-        multibounce->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
+        trace->multibounce->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
     const struct return_path returned =
-        return_path(&pair->returning, pieces, hit->point, receiver_x - last_x);
+        return_path(&trace->pair->returning, trace->pieces, hit->point, receiver_x - last_x);
     const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
     const vfloat cosine_return = dot3(hit->normal, returned.direction);
     mask is_lit = path->is_alive & MASK_OF(hit->surface >= 0) & MASK_OF(cosine_return > 0.0f);
     vfloat one_real, one_imaginary;
-    reflection_of_hit(fan, multibounce, objects, hit, 0.5f * (cosine + magnitude(cosine_return)),
-                      &is_lit, &one_real, &one_imaginary);
-    const struct leg leg = follow_leg(fan, pair, &pair->returning, objects, start_from(hit),
+    reflection_of_hit(trace, hit, 0.5f * (cosine + magnitude(cosine_return)), &is_lit, &one_real,
+                      &one_imaginary);
+    const struct leg leg = follow_leg(trace, &trace->pair->returning, start_from(hit),
                                       returned.direction, returned.length, is_lit);
-    outcome->queries += count_lanes(is_lit);
+    trace->outcome->queries += count_lanes(is_lit);
     const vfloat shift = path->first_x - receiver_x;
     const vfloat first = path->first_reach;
     const vfloat lengthened = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
     const vfloat range = 0.5f * (path->range + lengthened + path->length + returned.excess);
-    const vfloat half_path = 0.5f * (fan->reference_range + pair->returning.range) + range;
+    const vfloat half_path = 0.5f * (fan->reference_range + trace->pair->returning.range) + range;
     struct cell_phase phase = whole_cell(
         fan, integrate_cell(fan, cell,
                             path_gradient(path, &path->tube.along, returned.direction, cosine, 1.0f,
-                                          receiver_x, multibounce->is_focused),
+                                          receiver_x, trace->multibounce->is_focused),
                             path_gradient(path, &path->tube.across, returned.direction, cosine,
-                                          0.0f, receiver_x, multibounce->is_focused),
+                                          0.0f, receiver_x, trace->multibounce->is_focused),
                             range, path->first_wavefront));
     const vfloat section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* over the wavefront's */
-    const vfloat amplitude = phase.amplitude * (0.5f * pair->echoes) *
+    const vfloat amplitude = phase.amplitude * (0.5f * trace->pair->echoes) *
                              (1.0f + cosine_return / cosine) * SQUARE_ROOT(section) *
                              (half_path * path->first_spreading) * (half_path * returned.spreading);
     phase.amplitude = larger(smaller(amplitude, SPLAT(QUANTA_LIMIT)), SPLAT(-QUANTA_LIMIT));
@@ -278,9 +258,7 @@ FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
 
 /* Lists the echoes that are heard. Echoes lie in few places of a large grid, so the host adds them
  * up. Like tally_add, it reports numbers that cannot be counted. */
-FUNCTION void list_multibounce_echo(GLOBAL struct multibounce_echo_record *echoes,
-                                    GLOBAL RECORD_WORD *listed, const struct multibounce_echo *kept,
-                                    struct outcome_record *outcome)
+FUNCTION void list_multibounce_echo(const struct trace *trace, const struct multibounce_echo *kept)
 {
     for (int lane = 0; lane < WIDTH; lane++) {
         struct multibounce_echo_record record;
@@ -295,56 +273,40 @@ FUNCTION void list_multibounce_echo(GLOBAL struct multibounce_echo_record *echoe
         const float most =
             record.real_part * record.real_part + record.imaginary_part * record.imaginary_part;
         if (most != most)
-            outcome->faults |= FAULT_NOT_A_NUMBER;
+            trace->outcome->faults |= FAULT_NOT_A_NUMBER;
         else if (most > QUANTA_LIMIT * QUANTA_LIMIT)
-            outcome->faults |= FAULT_OVERFLOW;
+            trace->outcome->faults |= FAULT_OVERFLOW;
         else
-            echoes[next_in_list(listed)] = record;
-        outcome->impulses++;
+            trace->echoes[next_in_list(trace->listed)] = record;
+        trace->outcome->impulses++;
     }
 }
 
-FUNCTION void trace_multibounce_group(
-    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct image_pair_record *pair,
-    GLOBAL const struct multibounce_record *multibounce, GLOBAL const struct object_record *objects,
-    GLOBAL struct multibounce_echo_record *echoes, GLOBAL RECORD_WORD *listed, int strip,
-    int stratum, struct random_key key, RECORD_WORD first_ray, struct outcome_record *outcome)
+FUNCTION void trace_multibounce_group(const struct trace *trace, int stratum, RECORD_WORD first_ray)
 {
-    const struct wavefront_cell cell =
-        wavefront_cell_at(fan, pieces, strip, stratum, 0.0f, key, first_ray);
+    const struct wavefront_cell cell = wavefront_cell_at(trace, stratum, 0.0f, first_ray);
     struct multibounce_path path;
-    begin_multibounce(fan, pair, objects, &cell, &path, outcome);
-    for (int order = 2; order <= multibounce->interactions && ANY(path.is_alive); order++) {
-        bounce_on(fan, multibounce, objects, &path, outcome);
+    begin_multibounce(trace, &cell, &path);
+    for (int order = 2; order <= trace->multibounce->interactions && ANY(path.is_alive); order++) {
+        bounce_on(trace, &path);
         if (!ANY(path.is_alive & MASK_OF(path.hit.surface >= 0)))
             continue;
         struct multibounce_echo kept;
-        keep_multibounce_echo(fan, pieces, pair, multibounce, objects, &cell, &path, &kept,
-                              outcome);
-        list_multibounce_echo(echoes, listed, &kept, outcome);
+        keep_multibounce_echo(trace, &cell, &path, &kept);
+        list_multibounce_echo(trace, &kept);
     }
 }
 
-/* Traces the share `segment` of a sub-strip's fan. echoes: room for rays x strata x (interactions -
- * 1) of each sub-strip; listed: number of echoes in the list. */
-FUNCTION struct outcome_record trace_multibounce_strip(
-    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct image_pair_record *pair,
-    GLOBAL const struct multibounce_record *multibounce, GLOBAL const struct object_record *objects,
-    GLOBAL struct multibounce_echo_record *echoes, GLOBAL RECORD_WORD *listed, int strip,
-    int segment)
+/* Traces the segment of the sub-strip's fan. echoes: room for rays x strata x (interactions - 1) of
+ * each sub-strip. */
+FUNCTION void trace_multibounce_strip(const struct trace *trace)
 {
-    struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = key_of_strip(fan, strip);
-    for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
-            outcome.rays += rays_from(fan, ray, WIDTH);
-            trace_multibounce_group(fan, pieces, pair, multibounce, objects, echoes, listed, strip,
-                                    stratum, key, ray, &outcome);
+    for (int stratum = 0; stratum < (int)trace->fan.strata; stratum++)
+        for (RECORD_WORD ray = first_ray_of_item(trace); ray < trace->fan.rays;
+             ray += ray_step(trace)) {
+            count_rays(trace, ray, WIDTH);
+            trace_multibounce_group(trace, stratum, ray);
         }
-    outcome.queries += outcome.rays;
-    return outcome;
 }
 
 #endif

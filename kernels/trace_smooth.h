@@ -5,6 +5,7 @@
 #define SONJECT_KERNELS_TRACE_SMOOTH_H
 
 #include "fan.h"
+#include "image_sources.h"
 #include "intersection.h"
 #include "random.h"
 #include "seabed.h"
@@ -33,32 +34,33 @@ struct wavefront_cell {
 /* Returns the shift of a stratum's cells across the ray, -0.5...0.5 of their width, even over any
  * few neighbours. Without it the steps of cells along an edge would keep time with the echo's phase
  * from strip to strip, and the edge would shine. */
-FUNCTION float cell_shift_of(const struct fan_record *fan, int strip, int stratum)
+FUNCTION float cell_shift_of(const struct trace *trace, int stratum)
 {
+    const struct fan_record *fan = &trace->fan;
     const RECORD_WORD turn =
-        (RECORD_WORD)(fan->track_strip + fan->first_strip + strip) * fan->strata +
+        (RECORD_WORD)(fan->track_strip + fan->first_strip + trace->strip) * fan->strata +
         (RECORD_WORD)stratum;
     return (float)((turn * 0x9E3779B9u) >> 9) * 1.1920928955078125e-7f - 0.5f;
 }
 
 /* Returns the cells of one group of rays. shift: of the cells across the ray, in their widths. */
-FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
-                                                 GLOBAL const struct ray_piece_record *pieces,
-                                                 int strip, int stratum, float shift,
-                                                 struct random_key key, RECORD_WORD first_ray)
+FUNCTION struct wavefront_cell wavefront_cell_at(const struct trace *trace, int stratum,
+                                                 float shift, RECORD_WORD first_ray)
 {
+    const struct fan_record *fan = &trace->fan;
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     struct wavefront_cell cell;
     vfloat along;
-    three_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across, &cell.dither);
+    three_uniforms(trace->key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across,
+                   &cell.dither);
     cell.is_ray = MASK_OF(number < fan->rays);
     cell.width_along = fan->strip_width / (float)fan->strata;
     cell.offset_along = (along - 0.5f) * cell.width_along;
-    const float middle = strip_position(fan, strip) +
+    const float middle = strip_position(trace) +
                          ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
     cell.elevation = fan->first_elevation +
                      (VFLOAT_OF(number) + cell.fraction_across + shift) * fan->elevation_step;
-    cell.ray = fan_ray_at(fan, pieces, middle + cell.offset_along, cell.elevation);
+    cell.ray = fan_ray_at(trace, middle + cell.offset_along, cell.elevation);
     return cell;
 }
 
@@ -160,39 +162,64 @@ struct smooth_cells {
     vfloat reflection_real, reflection_imaginary;
 };
 
-FUNCTION struct smooth_cells trace_smooth_group(const struct fan_record *fan,
-                                                GLOBAL const struct ray_piece_record *pieces,
-                                                GLOBAL const struct object_record *objects,
-                                                int strip, int stratum, struct random_key key,
-                                                RECORD_WORD first_ray)
+FUNCTION struct smooth_cells trace_smooth_group(const struct trace *trace,
+                                                const struct wavefront_cell *cell)
 {
-    const struct wavefront_cell cell = wavefront_cell_at(
-        fan, pieces, strip, stratum, cell_shift_of(fan, strip, stratum), key, first_ray);
-    const struct aspect_ray broadside = broadside_aspect(&cell.ray);
-    const struct sliced_hit hit =
-        find_sliced_hit(fan, pieces, objects, cell.elevation, &cell.ray, &broadside);
+    const struct fan_record *fan = &trace->fan;
+    const struct aspect_ray broadside = broadside_aspect(&cell->ray);
+    const struct sliced_hit hit = find_sliced_hit(trace, cell->elevation, &cell->ray, &broadside);
     const struct nearest_hit nearest = hit.nearest;
     const struct fan_ray ray = hit.ray;
-    const mask on_object = cell.is_ray & MASK_OF(nearest.object == fan->only_object);
-    const vfloat to_seabed = seabed_distance(fan, objects, cell.ray.closest, cell.ray.direction,
+    const mask on_object = cell->is_ray & MASK_OF(nearest.object == fan->only_object);
+    const vfloat to_seabed = seabed_distance(trace, cell->ray.closest, cell->ray.direction,
                                              SPLAT(-fan->reference_range), on_object);
     struct smooth_cells cells;
     cells.is_hit = on_object & (hit.is_over_straight_water | MASK_OF(nearest.distance < to_seabed));
     const vfloat distance = SELECT(cells.is_hit, nearest.distance, SPLAT(0.0f));
-    const GLOBAL struct object_record *object = &objects[fan->only_object];
+    const GLOBAL struct object_record *object = &trace->objects[fan->only_object];
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
     const vfloat cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
     const vfloat range = range_along(&ray, distance);
     /* Along a direction q across the ray, the gradient of the path is -2 n.q/(n.d), in ranges that
      * count wavelengths. */
     const vfloat gradient = 2.0f * ray.range_per_metre;
-    cells.phase = integrate_cell(fan, &cell, gradient * normal.x / cosine,
+    cells.phase = integrate_cell(fan, cell, gradient * normal.x / cosine,
                                  gradient * dot3(normal, ray.upward) / cosine, range,
                                  ray.turn * (ray.wavefront + distance));
     cells.phase.amplitude =
         cells.phase.amplitude * ray.range_per_metre * refraction_gain(fan, &ray, distance);
     smooth_reflection(&object->surface, cosine, &cells.reflection_real,
                       &cells.reflection_imaginary);
+    return cells;
+}
+
+/* Takes the cells of a fan that leaves one source to the other by physical optics (kernels/MATH.md,
+ * "Image sources"). */
+FUNCTION struct smooth_cells trace_smooth_images_group(const struct trace *trace,
+                                                       const struct wavefront_cell *cell)
+{
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL const struct object_record *object = &trace->objects[fan->only_object];
+    const struct image_hit hit = find_image_hit(trace, FACE_OF_OPTICS, &cell->ray, cell->is_ray);
+    const struct image_path path = follow_path(trace, &cell->ray, &hit);
+    const vfloat cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
+    const vfloat bend = 1.0f + dot3(path.back.direction, cell->ray.direction);
+    const vfloat gradient_along = bend * hit.normal.x / cosine_out;
+    const vfloat gradient_across = bend * dot3(hit.normal, cell->ray.upward) / cosine_out +
+                                   dot3(path.back.direction, cell->ray.upward);
+    struct smooth_cells cells;
+    cells.is_hit = path.is_open;
+    cells.phase =
+        integrate_cell(fan, cell, gradient_along, gradient_across, path.range, path.wavefront_out);
+    cells.phase.amplitude = cells.phase.amplitude * (0.5f * trace->pair->echoes) *
+                            (1.0f + path.cosine_back / cosine_out) * path.spreading;
+    vfloat one_real, one_imaginary;
+    smooth_reflection(&object->surface, 0.5f * (cosine_out + magnitude(path.cosine_back)),
+                      &one_real, &one_imaginary);
+    cells.reflection_real =
+        one_real * path.reflection_real - one_imaginary * path.reflection_imaginary;
+    cells.reflection_imaginary =
+        one_real * path.reflection_imaginary + one_imaginary * path.reflection_real;
     return cells;
 }
 
@@ -215,54 +242,50 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
     outcome->impulses++;
 }
 
-FUNCTION void tally_smooth_echoes(const struct fan_record *fan, const struct smooth_cells *cells,
-                                  mask is_counted, struct cell_phase phase, GLOBAL TALLY *line,
-                                  struct outcome_record *outcome)
+FUNCTION void tally_smooth_echoes(const struct trace *trace, const struct smooth_cells *cells,
+                                  mask is_counted, struct cell_phase phase, GLOBAL TALLY *line)
 {
     struct smooth_echo echo;
-    put_smooth_echo(fan, is_counted, phase, cells->reflection_real, cells->reflection_imaginary,
-                    &echo);
+    put_smooth_echo(&trace->fan, is_counted, phase, cells->reflection_real,
+                    cells->reflection_imaginary, &echo);
     for (int lane = 0; lane < WIDTH; lane++)
-        tally_smooth_echo(line, &echo, lane, outcome);
+        tally_smooth_echo(line, &echo, lane, trace->outcome);
 }
 
 /* Counts the echoes of a group's cells with all their parts. Most cells have one part. */
-FUNCTION void tally_smooth_cells(const struct fan_record *fan, const struct smooth_cells *cells,
-                                 GLOBAL TALLY *line, struct outcome_record *outcome)
+FUNCTION void tally_smooth_cells(const struct trace *trace, const struct smooth_cells *cells,
+                                 GLOBAL TALLY *line)
 {
+    const struct fan_record *fan = &trace->fan;
     const vint parts = parts_of_cell(cells->phase);
     if (!ANY(cells->is_hit & MASK_OF(parts > 1))) {
-        tally_smooth_echoes(fan, cells, cells->is_hit, whole_cell(fan, cells->phase), line,
-                            outcome);
+        tally_smooth_echoes(trace, cells, cells->is_hit, whole_cell(fan, cells->phase), line);
         return;
     }
     for (int part = 0; part < CELL_PARTS_MAX; part++) {
         const mask is_part = cells->is_hit & MASK_OF(parts > part);
         if (!ANY(is_part))
             break;
-        tally_smooth_echoes(fan, cells, is_part, part_of_cell(fan, cells->phase, part, parts), line,
-                            outcome);
+        tally_smooth_echoes(trace, cells, is_part, part_of_cell(fan, cells->phase, part, parts),
+                            line);
     }
 }
 
-/* Traces the share `segment` of a sub-strip's fan. tally: strips x bins x (real, imaginary). */
-FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
-                                                  GLOBAL const struct ray_piece_record *pieces,
-                                                  GLOBAL const struct object_record *objects,
-                                                  GLOBAL TALLY *tally, int strip, int segment)
+/* Traces the segment of the sub-strip's fan: from the sonar and back, or between the image sources
+ * of the pair. tallies: strips x bins x (real, imaginary). */
+FUNCTION void trace_smooth_strip(const struct trace *trace, int by_images)
 {
-    struct outcome_record outcome = {0, 0, 0, 0};
-    const struct random_key key = key_of_strip(fan, strip);
-    GLOBAL TALLY *line = tally + (LONG_INDEX)strip * fan->bins * 2;
+    const struct fan_record *fan = &trace->fan;
+    GLOBAL TALLY *line = trace->tallies + (LONG_INDEX)trace->strip * fan->bins * 2;
     for (int stratum = 0; stratum < (int)fan->strata; stratum++)
-        for (RECORD_WORD ray = first_ray_of_item(segment); ray < fan->rays; ray += ray_step(fan)) {
-            outcome.rays += rays_from(fan, ray, WIDTH);
-            const struct smooth_cells cells =
-                trace_smooth_group(fan, pieces, objects, strip, stratum, key, ray);
-            tally_smooth_cells(fan, &cells, line, &outcome);
+        for (RECORD_WORD ray = first_ray_of_item(trace); ray < fan->rays; ray += ray_step(trace)) {
+            count_rays(trace, ray, WIDTH);
+            const struct wavefront_cell cell =
+                wavefront_cell_at(trace, stratum, cell_shift_of(trace, stratum), ray);
+            const struct smooth_cells cells = by_images ? trace_smooth_images_group(trace, &cell)
+                                                        : trace_smooth_group(trace, &cell);
+            tally_smooth_cells(trace, &cells, line);
         }
-    outcome.queries += outcome.rays;
-    return outcome;
 }
 
 #endif

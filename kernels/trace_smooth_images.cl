@@ -1,18 +1,5 @@
 /* Entry point like that of trace_smooth.cl, in a program of its own: compiling it takes long, and
  * few scenes have boundaries. */
-#include "trace_smooth_images.h"
+#include "trace_smooth.h"
 
-GROUP_KERNEL void trace_smooth_images(__global const struct fan_record *fan_buffer,
-                                      __global const struct ray_piece_record *pieces,
-                                      __global const struct object_record *objects,
-                                      __global TALLY *tally,
-                                      __global const struct image_pair_record *pair,
-                                      __global struct outcome_record *outcomes)
-{
-    const struct fan_record fan = *fan_buffer;
-    const int strip = strip_of_group(&fan, GROUP_NUMBER);
-    const int segment = GROUP_NUMBER % fan.segments;
-    const struct outcome_record outcome =
-        trace_smooth_images_strip(&fan, pieces, pair, objects, tally, strip, segment);
-    count_outcome(&outcomes[GROUP_NUMBER], &outcome);
-}
+TRACE_KERNEL(trace_smooth_images, trace_smooth_strip(&trace, 1))

@@ -8,6 +8,20 @@ struct vector3 {
     vfloat x, y, z;
 };
 
+FUNCTION struct vector3 vector3_of(vfloat x, vfloat y, vfloat z)
+{
+    struct vector3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+
+FUNCTION struct vector3 zero3(void)
+{
+    return vector3_of(SPLAT(0.0f), SPLAT(0.0f), SPLAT(0.0f));
+}
+
 FUNCTION vfloat dot3(struct vector3 a, struct vector3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -16,20 +30,22 @@ FUNCTION vfloat dot3(struct vector3 a, struct vector3 b)
 /* Returns a + b * t. */
 FUNCTION struct vector3 along3(struct vector3 a, struct vector3 b, vfloat t)
 {
-    struct vector3 sum;
-    sum.x = a.x + b.x * t;
-    sum.y = a.y + b.y * t;
-    sum.z = a.z + b.z * t;
-    return sum;
+    return vector3_of(a.x + b.x * t, a.y + b.y * t, a.z + b.z * t);
+}
+
+FUNCTION struct vector3 scaled3(struct vector3 v, vfloat factor)
+{
+    return vector3_of(v.x * factor, v.y * factor, v.z * factor);
+}
+
+FUNCTION struct vector3 divided3(struct vector3 v, vfloat divisor)
+{
+    return vector3_of(v.x / divisor, v.y / divisor, v.z / divisor);
 }
 
 FUNCTION struct vector3 reversed3(struct vector3 v)
 {
-    struct vector3 back;
-    back.x = -v.x;
-    back.y = -v.y;
-    back.z = -v.z;
-    return back;
+    return vector3_of(-v.x, -v.y, -v.z);
 }
 
 FUNCTION struct vector3 reflected3(struct vector3 v, struct vector3 normal)
@@ -44,11 +60,7 @@ FUNCTION struct vector3 minus3(struct vector3 a, struct vector3 b)
 
 FUNCTION struct vector3 choose3(mask m, struct vector3 yes, struct vector3 no)
 {
-    struct vector3 chosen;
-    chosen.x = SELECT(m, yes.x, no.x);
-    chosen.y = SELECT(m, yes.y, no.y);
-    chosen.z = SELECT(m, yes.z, no.z);
-    return chosen;
+    return vector3_of(SELECT(m, yes.x, no.x), SELECT(m, yes.y, no.y), SELECT(m, yes.z, no.z));
 }
 
 /* Finds two unit vectors that make a right-handed frame with a unit normal. The frame is Frisvad's,
@@ -60,23 +72,17 @@ FUNCTION void tangents3(struct vector3 normal, struct vector3 *first, struct vec
     const vfloat sign = SELECT(is_upward, SPLAT(1.0f), SPLAT(-1.0f));
     const vfloat a = -1.0f / (sign + normal.z);
     const vfloat b = normal.x * normal.y * a;
-    first->x = 1.0f + sign * normal.x * normal.x * a;
-    first->y = sign * b;
-    first->z = -sign * normal.x;
-    second->x = b;
-    second->y = sign + normal.y * normal.y * a;
-    second->z = -normal.y;
+    *first = vector3_of(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+    *second = vector3_of(b, sign + normal.y * normal.y * a, -normal.y);
 }
 
 /* Returns first * a + second * b + third * c. */
 FUNCTION struct vector3 combine3(struct vector3 first, vfloat a, struct vector3 second, vfloat b,
                                  struct vector3 third, vfloat c)
 {
-    struct vector3 sum;
-    sum.x = first.x * a + second.x * b + third.x * c;
-    sum.y = first.y * a + second.y * b + third.y * c;
-    sum.z = first.z * a + second.z * b + third.z * c;
-    return sum;
+    return vector3_of(first.x * a + second.x * b + third.x * c,
+                      first.y * a + second.y * b + third.y * c,
+                      first.z * a + second.z * b + third.z * c);
 }
 
 /* Stores the vectors of all lanes, to be read one by one. */
@@ -90,31 +96,19 @@ FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
 /* Broadcasts one lane's vector to all lanes. */
 FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
 {
-    struct vector3 v;
-    v.x = SPLAT(lanes[0][lane]);
-    v.y = SPLAT(lanes[1][lane]);
-    v.z = SPLAT(lanes[2][lane]);
-    return v;
+    return vector3_of(SPLAT(lanes[0][lane]), SPLAT(lanes[1][lane]), SPLAT(lanes[2][lane]));
 }
 
 FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
 {
-    struct vector3 v;
-    v.x = LOAD_VFLOAT(lanes[0]);
-    v.y = LOAD_VFLOAT(lanes[1]);
-    v.z = LOAD_VFLOAT(lanes[2]);
-    return v;
+    return vector3_of(LOAD_VFLOAT(lanes[0]), LOAD_VFLOAT(lanes[1]), LOAD_VFLOAT(lanes[2]));
 }
 
 /* Loads one vector a lane, from the elements `slot` on. */
 FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *y,
                                      GLOBAL const float *z, int slot)
 {
-    struct vector3 v;
-    v.x = LOAD_VFLOAT(x + slot);
-    v.y = LOAD_VFLOAT(y + slot);
-    v.z = LOAD_VFLOAT(z + slot);
-    return v;
+    return vector3_of(LOAD_VFLOAT(x + slot), LOAD_VFLOAT(y + slot), LOAD_VFLOAT(z + slot));
 }
 
 #endif

@@ -236,6 +236,12 @@ FUNCTION vfloat magnitude(vfloat value)
     return AS_VFLOAT(AS_VINT(value) & 0x7fffffff);
 }
 
+/* Returns -1 where the value is negative, else 1. */
+FUNCTION vfloat sign_of(vfloat value)
+{
+    return SELECT(MASK_OF(value < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+}
+
 /* Returns the mask as bits: bit i is lane i. */
 FUNCTION RECORD_WORD lane_bits(mask m)
 {

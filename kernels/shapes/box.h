@@ -45,17 +45,13 @@ FUNCTION void offer_face(vfloat height, struct vector3 candidate, vfloat *highes
 FUNCTION struct vector3 normal_of_side(GLOBAL const struct object_record *object,
                                        struct vector3 point, vfloat *highest)
 {
-    struct vector3 end, side, top, normal;
-    end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    end.y = end.z = SPLAT(0.0f);
-    side.y = SELECT(MASK_OF(point.y < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    side.x = side.z = SPLAT(0.0f);
-    top.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    top.x = top.y = SPLAT(0.0f);
+    const vfloat zero = SPLAT(0.0f);
+    struct vector3 normal = vector3_of(sign_of(point.x), zero, zero);
     *highest = magnitude(point.x) - object->half_length;
-    normal = end;
-    offer_face(magnitude(point.y) - object->half_width, side, highest, &normal);
-    offer_face(magnitude(point.z) - object->half_height, top, highest, &normal);
+    offer_face(magnitude(point.y) - object->half_width, vector3_of(zero, sign_of(point.y), zero),
+               highest, &normal);
+    offer_face(magnitude(point.z) - object->half_height, vector3_of(zero, zero, sign_of(point.z)),
+               highest, &normal);
     return normal;
 }
 
@@ -73,10 +69,8 @@ FUNCTION struct vector3 wedge_normal(GLOBAL const struct object_record *object,
     vfloat highest;
     (void)direction;
     struct vector3 normal = normal_of_side(object, point, &highest);
-    struct vector3 slant;
-    slant.x = SPLAT(object->slant_across);
-    slant.y = SPLAT(0.0f);
-    slant.z = SPLAT(object->slant_up);
+    const struct vector3 slant =
+        vector3_of(SPLAT(object->slant_across), SPLAT(0.0f), SPLAT(object->slant_up));
     offer_face(point.x * object->slant_across + point.z * object->slant_up - object->slant_offset,
                slant, &highest, &normal);
     return normal;

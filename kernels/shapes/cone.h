@@ -60,13 +60,11 @@ FUNCTION struct vector3 cone_normal(GLOBAL const struct object_record *object, s
     const mask on_end = MASK_OF(magnitude(point.z) - object->half_height > over_side);
     const mask is_on_axis = MASK_OF(from_axis <= 0.0f);
     const vfloat safe = SELECT(is_on_axis, SPLAT(1.0f), from_axis);
-    struct vector3 end, side;
     (void)direction;
-    end.x = end.y = SPLAT(0.0f);
-    end.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    side.x = slant_across * SELECT(is_on_axis, SPLAT(1.0f), point.x / safe);
-    side.y = slant_across * (point.y / safe);
-    side.z = SPLAT(slant_up);
+    const struct vector3 end = vector3_of(SPLAT(0.0f), SPLAT(0.0f), sign_of(point.z));
+    const struct vector3 side =
+        vector3_of(slant_across * SELECT(is_on_axis, SPLAT(1.0f), point.x / safe),
+                   slant_across * (point.y / safe), SPLAT(slant_up));
     return choose3(on_end, end, side);
 }
 

@@ -38,14 +38,8 @@ FUNCTION struct vector3 cylinder_normal(GLOBAL const struct object_record *objec
     const mask on_end =
         MASK_OF(object->half_length - magnitude(point.x) < object->radius - from_axis);
     const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
-    struct vector3 end, side;
-    end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    end.y = SPLAT(0.0f);
-    end.z = SPLAT(0.0f);
-    side.x = SPLAT(0.0f);
-    side.y = point.y / safe;
-    side.z = point.z / safe;
-    return choose3(on_end, end, side);
+    return choose3(on_end, vector3_of(sign_of(point.x), SPLAT(0.0f), SPLAT(0.0f)),
+                   vector3_of(SPLAT(0.0f), point.y / safe, point.z / safe));
 }
 
 #endif

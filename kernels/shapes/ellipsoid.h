@@ -8,11 +8,8 @@
 
 FUNCTION struct vector3 in_semi_axes(GLOBAL const struct object_record *object, struct vector3 v)
 {
-    struct vector3 scaled;
-    scaled.x = v.x / object->half_length;
-    scaled.y = v.y / object->half_width;
-    scaled.z = v.z / object->half_height;
-    return scaled;
+    return vector3_of(v.x / object->half_length, v.y / object->half_width,
+                      v.z / object->half_height);
 }
 
 /* Scales the semi-axes to 1, which gives a unit sphere. Distances along the ray do not change. */
@@ -38,16 +35,12 @@ FUNCTION struct vector3 ellipsoid_normal(GLOBAL const struct object_record *obje
         object->half_length < object->half_width ? object->half_length : object->half_width;
     shortest = object->half_height < shortest ? object->half_height : shortest;
     const struct vector3 scaled = in_semi_axes(object, point);
-    struct vector3 normal;
-    normal.x = scaled.x * (shortest / object->half_length);
-    normal.y = scaled.y * (shortest / object->half_width);
-    normal.z = scaled.z * (shortest / object->half_height);
+    const struct vector3 normal = vector3_of(scaled.x * (shortest / object->half_length),
+                                             scaled.y * (shortest / object->half_width),
+                                             scaled.z * (shortest / object->half_height));
     const vfloat length = SQUARE_ROOT(dot3(normal, normal));
     const vfloat safe = SELECT(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
-    normal.x = normal.x / safe;
-    normal.y = normal.y / safe;
-    normal.z = normal.z / safe;
-    return normal;
+    return divided3(normal, safe);
 }
 
 #endif

@@ -88,20 +88,16 @@ FUNCTION struct vector3 ended_cylinder_normal(GLOBAL const struct object_record 
 {
     const vfloat from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
     const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
-    struct vector3 normal;
+    struct vector3 normal = vector3_of(SPLAT(0.0f), point.y / safe, point.z / safe);
     (void)direction;
-    normal.x = SPLAT(0.0f);
-    normal.y = point.y / safe;
-    normal.z = point.z / safe;
     for (int number = END_NOSE; number <= END_TAIL; number++) {
         GLOBAL const struct end_record *end = &object->ends[number];
         const float outward = number == END_NOSE ? 1.0f : -1.0f;
         const vfloat to_joint = end->joint - outward * point.x;
-        struct vector3 on_end;
-        on_end.x = 1.0f + end->curvature * (outward * point.x - (end->joint + end->depth));
-        on_end.x = outward * on_end.x;
-        on_end.y = end->curvature * point.y;
-        on_end.z = end->curvature * point.z;
+        const vfloat from_pole =
+            1.0f + end->curvature * (outward * point.x - (end->joint + end->depth));
+        const struct vector3 on_end =
+            vector3_of(outward * from_pole, end->curvature * point.y, end->curvature * point.z);
         const mask is_there = end->depth > 0.0f ? MASK_OF(to_joint < 0.0f)
                                                 : MASK_OF(to_joint < object->radius - from_axis);
         if (!end->is_open)

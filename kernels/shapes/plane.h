@@ -20,13 +20,9 @@ FUNCTION struct interval plane_interval(GLOBAL const struct object_record *objec
 FUNCTION struct vector3 plane_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
-    struct vector3 normal;
     (void)object;
     (void)point;
-    normal.x = SPLAT(0.0f);
-    normal.y = SPLAT(0.0f);
-    normal.z = SELECT(MASK_OF(direction.z > 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    return normal;
+    return vector3_of(SPLAT(0.0f), SPLAT(0.0f), sign_of(-direction.z));
 }
 
 #endif

@@ -19,12 +19,8 @@ FUNCTION struct interval sphere_interval(GLOBAL const struct object_record *obje
 FUNCTION struct vector3 sphere_normal(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction)
 {
-    struct vector3 normal;
     (void)direction;
-    normal.x = point.x / object->radius;
-    normal.y = point.y / object->radius;
-    normal.z = point.z / object->radius;
-    return normal;
+    return divided3(point, SPLAT(object->radius));
 }
 
 #endif

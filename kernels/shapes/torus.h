@@ -163,16 +163,10 @@ FUNCTION struct vector3 torus_normal(GLOBAL const struct object_record *object,
     (void)direction;
     const vfloat rho = distance_from_axis(point);
     const vfloat outward = (rho - object->radius) / rho;
-    struct vector3 normal;
-    normal.x = point.x * outward;
-    normal.y = point.y * outward;
-    normal.z = point.z;
+    const struct vector3 normal = vector3_of(point.x * outward, point.y * outward, point.z);
     const vfloat length = SQUARE_ROOT(dot3(normal, normal));
     const vfloat safe = SELECT(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
-    normal.x = normal.x / safe;
-    normal.y = normal.y / safe;
-    normal.z = normal.z / safe;
-    return normal;
+    return divided3(normal, safe);
 }
 
 #endif

@@ -345,11 +345,11 @@ static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tra
     CHECK(target_spheres_init(&spheres, tracer, origin));
     chain_record_init(&chains, trace, tracer, &spheres, origin);
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CHAINS, "trace_chains");
-    THEN(status, launch_add(launch, tracer, sizeof chains, &chains));
+    THEN(status, launch_add(launch, tracer, LAUNCH_CHAINS, sizeof chains, &chains));
     THEN(status, launch_add_objects(launch, tracer, &parts, origin, NULL));
-    THEN(status, launch_add(launch, tracer, spheres.bytes, spheres.records));
-    THEN(status, launch_add(launch, tracer, map_bytes, map));
-    THEN(status, launch_add(launch, tracer, tally_bytes, NULL));
+    THEN(status, launch_add(launch, tracer, LAUNCH_SPHERES, spheres.bytes, spheres.records));
+    THEN(status, launch_add(launch, tracer, LAUNCH_MAP, map_bytes, map));
+    THEN(status, launch_add(launch, tracer, LAUNCH_TALLIES, tally_bytes, NULL));
     free(spheres.records);
     return status;
 }
@@ -397,6 +397,6 @@ sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer
     const size_t cells = line_grid_cells(&trace->grid);
     const double energy_of_quantum =
         ldexp(view_energy_scale(&tracer->view), -trace->exponents[trace->first_order - 1 + plane]);
-    return tallies_read(tracer, trace->launch.buffers[CHAIN_TALLIES], plane * cells, cells,
+    return tallies_read(tracer, trace->launch.buffers[LAUNCH_TALLIES], plane * cells, cells,
                         energy_of_quantum, 1, &energy);
 }

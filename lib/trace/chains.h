@@ -64,15 +64,6 @@ double second_order_most(const struct tracer *tracer, const struct line_grid *gr
 /* Returns the number of rays that a part's fan has in a bin. */
 double chain_rays_per_bin(const struct tracer *tracer, const struct line_grid *grid, uint32_t part);
 
-/* The launch's buffers. */
-enum chain_buffer {
-    CHAIN_RECORD,
-    CHAIN_OBJECTS,
-    CHAIN_SPHERES,
-    CHAIN_MAP,
-    CHAIN_TALLIES
-};
-
 struct chain_trace {
     struct line_grid grid; /* the patch's, with its margins */
     uint32_t

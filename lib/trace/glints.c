@@ -181,7 +181,7 @@ static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tr
     THEN(status, launch_add_tallies(launch, tracer, strips, 2 * (size_t)trace->grid.bins.count,
                                     &trace->chunk));
     if (sources)
-        THEN(status, launch_add(launch, tracer, sizeof *sources, sources));
+        THEN(status, launch_add(launch, tracer, LAUNCH_PAIR, sizeof *sources, sources));
     fan_set_parts(&launch->fan, tracer, &parts);
     part_list_clear(&parts);
     return status;
@@ -235,7 +235,7 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
                                    struct span strips, float *real_part, float *imaginary_part)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    device_buffer tallies = trace->launch.buffers[SMOOTH_TALLIES];
+    device_buffer tallies = trace->launch.buffers[LAUNCH_TALLIES];
     trace->launch.fan.first_strip = strips.first;
     trace->launch.fan.strips = strips.count;
     CHECK(buffer_clear(tracer->report, tracer->device, tallies, 2 * count * sizeof(int64_t)));

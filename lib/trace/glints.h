@@ -10,13 +10,6 @@
 #define GLINT_CELL_WAVELENGTHS                                                                     \
     0.125 /* spacing of rays on the wavefront, where nothing allows more */
 
-/* The launch's buffers. */
-enum smooth_buffer {
-    SMOOTH_OBJECTS,
-    SMOOTH_TALLIES,
-    SMOOTH_SOURCES /* image_pair_record; image sources only */
-};
-
 struct smooth_trace {
     struct line_grid grid;       /* the cells that the object covers */
     double amplitude_of_quantum; /* m */

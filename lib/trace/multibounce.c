@@ -209,12 +209,14 @@ static sonject_status begin_launch(struct multibounce_launch *of_pair, struct tr
     sonject_status status =
         launch_begin(launch, tracer, PROGRAM_TRACE_MULTIBOUNCE, "trace_multibounce");
     THEN(status, launch_add_objects(launch, tracer, &parts, tracer->placements[part].centre, NULL));
-    THEN(status, launch_add(launch, tracer, sizeof of_pair->sources, &of_pair->sources));
-    THEN(status, launch_add(launch, tracer, sizeof of_pair->record, &of_pair->record));
+    THEN(status,
+         launch_add(launch, tracer, LAUNCH_PAIR, sizeof of_pair->sources, &of_pair->sources));
+    THEN(status,
+         launch_add(launch, tracer, LAUNCH_MULTIBOUNCE, sizeof of_pair->record, &of_pair->record));
     THEN(status, buffer_reserve(tracer->report, tracer->device,
                                 of_pair->capacity * sizeof(struct multibounce_echo_record),
-                                &launch->buffers[launch->buffer_count++]));
-    THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
+                                &launch->buffers[LAUNCH_ECHOES]));
+    THEN(status, launch_add(launch, tracer, LAUNCH_LISTED, sizeof(uint32_t), NULL));
     return status;
 }
 
@@ -272,15 +274,15 @@ sonject_status multibounce_launch_strips(struct multibounce_launch *of_pair, str
     const void *mapped;
     of_pair->launch.fan.first_strip = strips.first;
     of_pair->launch.fan.strips = strips.count;
-    CHECK(buffer_clear(report, device, buffers[MULTIBOUNCE_LISTED], sizeof listed));
+    CHECK(buffer_clear(report, device, buffers[LAUNCH_LISTED], sizeof listed));
     CHECK(launch_run(&of_pair->launch, tracer));
-    CHECK(buffer_read(report, device, buffers[MULTIBOUNCE_LISTED], 0, sizeof listed, &listed));
+    CHECK(buffer_read(report, device, buffers[LAUNCH_LISTED], 0, sizeof listed, &listed));
     if (listed == 0)
         return SONJECT_OK;
-    CHECK(buffer_map(report, device, buffers[MULTIBOUNCE_ECHOES],
+    CHECK(buffer_map(report, device, buffers[LAUNCH_ECHOES],
                      listed * sizeof(struct multibounce_echo_record), &mapped));
     const bool is_added = multibounce_sums_add(sums, mapped, listed);
-    buffer_unmap(device, buffers[MULTIBOUNCE_ECHOES], mapped);
+    buffer_unmap(device, buffers[LAUNCH_ECHOES], mapped);
     CHECK_MEMORY(report, is_added, "multi-bounce echoes");
     return SONJECT_OK;
 }

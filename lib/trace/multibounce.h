@@ -80,15 +80,6 @@ struct multibounce_strips {
     struct span first_hits;
 };
 
-/* The launch's buffers. */
-enum multibounce_buffer {
-    MULTIBOUNCE_OBJECTS,
-    MULTIBOUNCE_SOURCES,
-    MULTIBOUNCE_RECORD,
-    MULTIBOUNCE_ECHOES,
-    MULTIBOUNCE_LISTED
-};
-
 /* The echoes of one pair of sources. */
 struct multibounce_launch {
     struct launch launch;

@@ -334,7 +334,7 @@ sonject_status launch_add_objects(struct launch *launch, struct tracer *tracer,
     for (uint32_t i = 0; tiles && i < parts->count; i++)
         rough_tile_describe(tiles, placement_of(tracer, parts, i)->object, &records[i]);
     const sonject_status status =
-        object_buffer_create(tracer, records, parts, &launch->buffers[launch->buffer_count++]);
+        object_buffer_create(tracer, records, parts, &launch->buffers[LAUNCH_OBJECTS]);
     free(records);
     return status;
 }

@@ -178,12 +178,13 @@ static sonject_status begin_launch(struct rough_trace *trace, struct tracer *tra
     patch_fan_origin(origin, &tracer->view);
     sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_ROUGH, "trace_rough");
     THEN(status, launch_add_objects(launch, tracer, &parts, origin, trace));
-    THEN(status, launch_add(launch, tracer, map_bytes, map));
-    THEN(status,
-         launch_add(launch, tracer, trace->edges.count * sizeof(float), trace->edges.elevations));
+    THEN(status, launch_add(launch, tracer, LAUNCH_MAP, map_bytes, map));
+    THEN(status, launch_add(launch, tracer, LAUNCH_EDGES, trace->edges.count * sizeof(float),
+                            trace->edges.elevations));
     THEN(status, launch_add_tallies(launch, tracer, trace->grid.strips.count,
                                     (size_t)trace->grid.bins.count, &trace->chunk));
-    THEN(status, launch_add(launch, tracer, trace->tile_elements * sizeof(int64_t), NULL));
+    THEN(status,
+         launch_add(launch, tracer, LAUNCH_TILES, trace->tile_elements * sizeof(int64_t), NULL));
     return status;
 }
 
@@ -277,7 +278,7 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
                                   struct span strips, float *seabed)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    device_buffer tallies = trace->launch.buffers[ROUGH_TALLIES];
+    device_buffer tallies = trace->launch.buffers[LAUNCH_TALLIES];
     rough_trace_aim(trace, strips);
     CHECK(buffer_clear(tracer->report, tracer->device, tallies, count * sizeof(int64_t)));
     CHECK(launch_run(&trace->launch, tracer));
@@ -288,7 +289,7 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
 
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles)
 {
-    CHECK(tallies_read(tracer, trace->launch.buffers[ROUGH_TILES], 0, trace->tile_elements,
+    CHECK(tallies_read(tracer, trace->launch.buffers[LAUNCH_TILES], 0, trace->tile_elements,
                        trace->energy_of_quantum, 1, &tiles));
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
         const struct rough_tile *tile = &trace->tiles[i];
@@ -299,13 +300,6 @@ sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *trace
     }
     return SONJECT_OK;
 }
-
-/* The launch's buffers. The tiles belong to the trace. */
-enum images_buffer {
-    IMAGES_OBJECTS,
-    IMAGES_TILES,
-    IMAGES_SOURCES
-};
 
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
                                  struct launch *launch, const struct part_list *parts,
@@ -327,12 +321,11 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     fan->quanta = trace->launch.fan.quanta;
     fan->first_strip = tile->grid.strips.first;
     fan->strips = tile->grid.strips.count;
-    launch->buffers[IMAGES_TILES] = trace->launch.buffers[ROUGH_TILES];
-    launch->buffer_count = IMAGES_SOURCES;
-    THEN(status, launch_add(launch, tracer, sizeof record, &record));
+    launch->buffers[LAUNCH_TILES] = trace->launch.buffers[LAUNCH_TILES];
+    THEN(status, launch_add(launch, tracer, LAUNCH_PAIR, sizeof record, &record));
     THEN(status, launch_run(launch, tracer));
-    launch->buffers[IMAGES_TILES] = NULL;
-    buffer_release(tracer->device, &launch->buffers[IMAGES_SOURCES]);
+    launch->buffers[LAUNCH_TILES] = NULL; /* the tiles belong to the trace */
+    buffer_release(tracer->device, &launch->buffers[LAUNCH_PAIR]);
     ray_table_clear(&launch->rays);
     return status;
 }

@@ -11,15 +11,6 @@ struct rough_tile {
     size_t offset; /* place of the tile's first plane in the tiles */
 };
 
-/* The launch's buffers. */
-enum rough_buffer {
-    ROUGH_OBJECTS,
-    ROUGH_MAP,
-    ROUGH_EDGES,
-    ROUGH_TALLIES,
-    ROUGH_TILES
-};
-
 struct rough_trace {
     struct line_grid grid; /* the patch's, with its margins */
     struct rough_tile tiles[SCENE_OBJECTS_MAX];

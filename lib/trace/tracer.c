@@ -184,26 +184,28 @@ static sonject_status run_turns(struct launch *launch, struct tracer *tracer, st
     struct fan_record *fan = &launch->fan;
     const size_t groups = (size_t)turns.count * (size_t)fan->segments;
     const size_t items = groups * device->group_items;
-    const size_t last = launch->buffer_count + 2;
-    device_buffer buffers[LAUNCH_BUFFERS_MAX + 3] = {NULL};
-    struct kernel_argument arguments[LAUNCH_BUFFERS_MAX + 3];
+    enum {
+        LAST = LAUNCH_BUFFERS + 2
+    };
+    device_buffer buffers[LAST + 1] = {NULL};
+    struct kernel_argument arguments[LAST + 1];
     struct outcome_record *outcomes = allocate_array(groups, sizeof *outcomes);
     CHECK_MEMORY(report, outcomes, "trace counts");
     fan->first_turn = turns.first;
-    memcpy(buffers + 2, launch->buffers, launch->buffer_count * sizeof *buffers);
-    for (size_t i = 0; i <= last; i++)
+    memcpy(buffers + 2, launch->buffers, sizeof launch->buffers);
+    for (size_t i = 0; i <= LAST; i++)
         arguments[i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
     sonject_status status = buffer_create(report, device, sizeof *fan, fan, &buffers[0]);
     THEN(status, buffer_create(report, device, launch->rays.count * sizeof *launch->rays.pieces,
                                launch->rays.pieces, &buffers[1]));
-    THEN(status, buffer_create(report, device, groups * sizeof *outcomes, NULL, &buffers[last]));
-    THEN(status, kernel_run(report, device, launch->kernel, arguments, last + 1, 1, &items));
+    THEN(status, buffer_create(report, device, groups * sizeof *outcomes, NULL, &buffers[LAST]));
+    THEN(status, kernel_run(report, device, launch->kernel, arguments, LAST + 1, 1, &items));
     THEN(status,
-         buffer_read(report, device, buffers[last], 0, groups * sizeof *outcomes, outcomes));
+         buffer_read(report, device, buffers[LAST], 0, groups * sizeof *outcomes, outcomes));
     THEN(status, add_outcomes(tracer, outcomes, groups));
     buffer_release(device, &buffers[0]);
     buffer_release(device, &buffers[1]);
-    buffer_release(device, &buffers[last]);
+    buffer_release(device, &buffers[LAST]);
     free(outcomes);
     return status;
 }
@@ -245,17 +247,15 @@ sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
 void launch_end(struct launch *launch)
 {
     kernel_release(launch->device, &launch->kernel);
-    for (size_t i = 0; i < launch->buffer_count; i++)
+    for (size_t i = 0; i < LAUNCH_BUFFERS; i++)
         buffer_release(launch->device, &launch->buffers[i]);
-    launch->buffer_count = 0;
     ray_table_clear(&launch->rays);
 }
 
-sonject_status launch_add(struct launch *launch, struct tracer *tracer, size_t bytes,
-                          const void *contents)
+sonject_status launch_add(struct launch *launch, struct tracer *tracer, enum launch_buffer buffer,
+                          size_t bytes, const void *contents)
 {
-    return buffer_create(tracer->report, tracer->device, bytes, contents,
-                         &launch->buffers[launch->buffer_count++]);
+    return buffer_create(tracer->report, tracer->device, bytes, contents, &launch->buffers[buffer]);
 }
 
 sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, int32_t strips,
@@ -265,7 +265,7 @@ sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, 
     const size_t fitting = TALLY_BYTES / strip_bytes;
     *chunk = fitting < 1 ? 1 : fitting < (size_t)strips ? (int32_t)fitting : strips;
     return buffer_reserve(tracer->report, tracer->device, (size_t)*chunk * strip_bytes,
-                          &launch->buffers[launch->buffer_count++]);
+                          &launch->buffers[LAUNCH_TALLIES]);
 }
 
 sonject_status tallies_read(struct tracer *tracer, device_buffer tallies, size_t first,

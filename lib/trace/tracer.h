@@ -72,7 +72,21 @@ struct ray_table {
     size_t count;
 };
 
-#define LAUNCH_BUFFERS_MAX 5
+/* The buffers of a launch, in the order of TRACE_ARGUMENTS (kernels/trace.h). */
+enum launch_buffer {
+    LAUNCH_OBJECTS,
+    LAUNCH_MAP,
+    LAUNCH_EDGES,
+    LAUNCH_PAIR,
+    LAUNCH_CHAINS,
+    LAUNCH_SPHERES,
+    LAUNCH_MULTIBOUNCE,
+    LAUNCH_TALLIES,
+    LAUNCH_TILES,
+    LAUNCH_ECHOES,
+    LAUNCH_LISTED,
+    LAUNCH_BUFFERS
+};
 
 /* A kernel and its arguments: the fan and its rays first, then the buffers, then the reports of the
  * groups of work-items. All that it holds is its own. */
@@ -81,8 +95,7 @@ struct launch {
     device_kernel kernel;  /* NULL where checkpoints are added up and nothing is traced */
     struct fan_record fan;
     struct ray_table rays;
-    device_buffer buffers[LAUNCH_BUFFERS_MAX]; /* in the order in which they were added */
-    size_t buffer_count;
+    device_buffer buffers[LAUNCH_BUFFERS]; /* NULL: the tracer does without */
 };
 
 /* Creates the kernel in the variant that the scene needs. `launch` is zeros except for its fan and
@@ -91,9 +104,9 @@ sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
                             enum device_program program, const char *kernel_name);
 void launch_end(struct launch *launch);
 
-/* Adds a buffer. Errors: as buffer_create. */
-sonject_status launch_add(struct launch *launch, struct tracer *tracer, size_t bytes,
-                          const void *contents);
+/* Makes one of the launch's buffers. Errors: as buffer_create. */
+sonject_status launch_add(struct launch *launch, struct tracer *tracer, enum launch_buffer buffer,
+                          size_t bytes, const void *contents);
 
 /* Adds tallies for as many of `strips` strips as fit 16 MB (at least one), each of `elements`
  * 64-bit integers. Sets *chunk to the number of strips. */

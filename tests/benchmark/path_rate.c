@@ -88,7 +88,7 @@ static struct measured time_rough(struct bench *bench)
     rough.launch.fan.first_strip = rough.grid.strips.first;
     rough.launch.fan.strips = rough.chunk;
     const struct program program = {
-        &rough.launch, ROUGH_TALLIES,
+        &rough.launch, LAUNCH_TALLIES,
         (size_t)rough.chunk * (size_t)rough.grid.bins.count * sizeof(int64_t), NULL};
     const struct measured measured = time_program(bench, &program);
     rough_trace_end(&rough);
@@ -102,7 +102,7 @@ static struct measured time_glints(struct bench *bench)
     smooth.launch.fan.first_strip = smooth.grid.strips.first;
     smooth.launch.fan.strips = smooth.chunk;
     const struct program program = {
-        &smooth.launch, SMOOTH_TALLIES,
+        &smooth.launch, LAUNCH_TALLIES,
         2 * (size_t)smooth.chunk * (size_t)smooth.grid.bins.count * sizeof(int64_t), NULL};
     const struct measured measured = time_program(bench, &program);
     smooth_trace_end(&smooth);
@@ -114,7 +114,7 @@ static struct measured time_chains(struct bench *bench, uint32_t interactions)
     struct chain_trace trace;
     bench->scene.injection.interactions = interactions;
     EXPECT_OK(&bench->report, chain_trace_begin(&trace, &bench->tracer, NULL));
-    const struct program program = {&trace.launch, CHAIN_TALLIES,
+    const struct program program = {&trace.launch, LAUNCH_TALLIES,
                                     line_grid_cells(&trace.grid) * sizeof(int64_t), &trace};
     const struct measured measured = time_program(bench, &program);
     chain_trace_end(&trace);

@@ -18,9 +18,7 @@ static struct vector3 load_three(const float *planes, uint32_t rays)
 void CLUTTER_SEARCH(const struct object_record *objects, int count, enum search_question question,
                     const float *input, float *distance, int32_t *object, uint32_t rays)
 {
-    struct fan_record fan;
-    memset(&fan, 0, sizeof fan);
-    fan.objects = count;
+    const struct trace trace = {.fan = {.objects = count}, .objects = objects};
     for (uint32_t ray = 0; ray < rays; ray += WIDTH) {
         const struct vector3 point = load_three(input + ray, rays);
         const struct vector3 direction = load_three(input + 3 * rays + ray, rays);
@@ -35,7 +33,7 @@ void CLUTTER_SEARCH(const struct object_record *objects, int count, enum search_
         } else {
             /* some lanes rest */
             const mask is_ray = MASK_OF(limit > 0.5f);
-            hit = find_nearest_ahead(&fan, objects, point, direction, 0.0f, SPLAT(FAR_AWAY), 0,
+            hit = find_nearest_ahead(&trace, point, direction, 0.0f, SPLAT(FAR_AWAY), 0,
                                      left_behind, is_ray);
             hit.distance = SELECT(is_ray, hit.distance, SPLAT(0.0f));
             hit.object = SELECT(is_ray, hit.object, SPLAT_VINT(-1));

@@ -278,20 +278,20 @@ static void trace_begin(struct trace *trace, struct bench *bench, const struct s
                       ? rough_trace_begin_beam(&trace->rough, tracer, &tracer->response)
                       : rough_trace_begin(&trace->rough, tracer, subject->map));
         trace->launch = &trace->rough.launch;
-        trace->tallies = trace->launch->buffers[ROUGH_TALLIES];
+        trace->tallies = trace->launch->buffers[LAUNCH_TALLIES];
         grid = &trace->rough.grid;
         assert_true(trace->rough.chunk >= grid->strips.count);
     } else if (subject->part == GLINTS) {
         EXPECT_OK(&bench->report,
                   smooth_trace_begin(&trace->smooth, tracer, subject->object, subject->pair));
         trace->launch = &trace->smooth.launch;
-        trace->tallies = trace->launch->buffers[SMOOTH_TALLIES];
+        trace->tallies = trace->launch->buffers[LAUNCH_TALLIES];
         grid = &trace->smooth.grid;
         assert_true(grid->bins.count > 0);
     } else {
         EXPECT_OK(&bench->report, chain_trace_begin(&trace->chains, tracer, subject->map));
         trace->launch = &trace->chains.launch;
-        trace->tallies = trace->launch->buffers[CHAIN_TALLIES];
+        trace->tallies = trace->launch->buffers[LAUNCH_TALLIES];
         grid = &trace->chains.grid;
     }
     trace->strips = grid->strips;
@@ -405,7 +405,7 @@ static struct tallies trace_on_device(struct bench *bench, const struct subject 
     if (subject->part == CHAINS)
         read_sums(bench, trace.tallies, tallies.count, tallies.sums);
     if (tallies.tile_count > 0)
-        read_sums(bench, trace.launch->buffers[ROUGH_TILES], tallies.tile_count, tallies.tiles);
+        read_sums(bench, trace.launch->buffers[LAUNCH_TILES], tallies.tile_count, tallies.tiles);
     tallies.counts = bench->tracer.counts;
     launch_end(trace.launch);
     return tallies;
@@ -562,7 +562,7 @@ static int64_t *all_tiles(struct bench *bench, size_t *elements)
     EXPECT_OK(&bench->report, rough_trace_images(&trace, &bench->tracer));
     free(energy);
     *elements = trace.tile_elements;
-    int64_t *tiles = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
+    int64_t *tiles = bench_copy_buffer(bench, trace.launch.buffers[LAUNCH_TILES]);
     rough_trace_end(&trace);
     return tiles;
 }

@@ -74,8 +74,15 @@ TEST(test_closed_sphere)
     struct object_record sphere;
     lay_sphere(&fan, &chains, &sphere, lambert);
     int64_t *tallies = zeroed((size_t)ORDERS * BINS, sizeof *tallies);
-    const struct outcome_record outcome = trace_chains_strip(&fan, NULL, &chains, &sphere, NULL,
-                                                             NULL, tallies, (float[1]){0.0f}, 0, 0);
+    struct outcome_record outcome = {0};
+    struct trace trace = {.fan = fan,
+                          .objects = &sphere,
+                          .chains = &chains,
+                          .tallies = tallies,
+                          .throughputs = (float[1]){0.0f},
+                          .outcome = &outcome};
+    begin_strip(&trace, 0, 0);
+    trace_chains_strip(&trace);
     assert_int_equal(outcome.faults, 0);
     double energy[ORDERS];
     raw_energies(&fan, tallies, energy);
@@ -151,11 +158,12 @@ TEST(test_sea_surface_keeps_energy)
         hit.back.y = -sqrtf(1.0f - cosine * cosine);
         hit.back.z = -cosine;
         double sum = 0.0, square = 0.0;
+        const struct trace trace = {.chains = &chains, .spheres = &sphere};
         for (uint32_t i = 0; i < SAMPLES; i++) {
             float u, v, choice;
             three_uniforms(random_key_of(3, 0, 77, (uint32_t)variant), i, 0, &u, &v, &choice);
-            const struct chain_step step = step_from_surface(
-                &chains, &sphere, NULL, &chains.sea_surface, SEA_SURFACE, 2, &hit, choice, u, v);
+            const struct chain_step step = step_from_surface(&trace, NULL, &chains.sea_surface,
+                                                             SEA_SURFACE, 2, &hit, choice, u, v);
             sum += (double)step.weight;
             square += (double)step.weight * (double)step.weight;
         }
@@ -216,8 +224,8 @@ static struct chain_step sample_step(const struct chain_record *chains,
 {
     float u, v, choice;
     three_uniforms(random_key_of(5, 0, 78, stream), ray, 0, &u, &v, &choice);
-    return step_from_surface(chains, targets->spheres, NULL, &chains->seabed, SEABED, order, hit,
-                             choice, u, v);
+    const struct trace trace = {.chains = chains, .spheres = targets->spheres};
+    return step_from_surface(&trace, NULL, &chains->seabed, SEABED, order, hit, choice, u, v);
 }
 
 static int part_of_sky(struct vector3 direction)

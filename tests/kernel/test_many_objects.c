@@ -207,16 +207,21 @@ static size_t compare_smooth(struct bench *bench, uint32_t number)
     EXPECT_OK(&bench->report, smooth_trace_strips(&trace, tracer, strips, field, field + cells));
     EXPECT_OK(&bench->report, object_buffer_create(tracer, records, &all, &buffer));
     struct object_record *objects = bench_copy_buffer(bench, buffer);
-    int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[SMOOTH_TALLIES]);
+    int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[LAUNCH_TALLIES]);
     assert_true(trace.launch.fan.objects < (int)tracer->part_count / 2);
     objects[0].tree_words = 0;
     trace.launch.fan.segments = 1;
     trace.launch.fan.objects = (int)tracer->part_count;
     trace.launch.fan.relief_words = object_buffer_relief_words(tracer, tracer->part_count);
     trace.launch.fan.only_object = (int)number;
-    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
-        assert_int_equal(
-            trace_smooth_strip(&trace.launch.fan, NULL, objects, lines, strip, 0).faults, 0);
+    struct outcome_record outcome = {0};
+    struct trace by_all = {
+        .fan = trace.launch.fan, .objects = objects, .tallies = lines, .outcome = &outcome};
+    for (int strip = 0; strip < by_all.fan.strips; strip++) {
+        begin_strip(&by_all, strip, 0);
+        trace_smooth_strip(&by_all, 0);
+    }
+    assert_int_equal(outcome.faults, 0);
     const size_t filled = bench_expect_sums("glints", from_device, lines, 2 * cells);
     free(field);
     free(lines);

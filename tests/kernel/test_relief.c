@@ -13,14 +13,9 @@
 /* A relief as the fan sees it. */
 struct sea {
     struct relief relief;
-    struct fan_record fan;
+    struct trace trace;
     uint32_t *words;
 };
-
-static const struct object_record *objects_of(const struct sea *sea)
-{
-    return (const struct object_record *)sea->words;
-}
 
 typedef double height_function(double x, double y);
 
@@ -65,9 +60,10 @@ static void sea_init(struct sea *sea, height_function *height, double step, doub
     relief_finish(relief);
     sea->words = zeroed(WORDS_HEAD + relief_word_count(relief), sizeof *sea->words);
     relief_words_init(sea->words + WORDS_HEAD, relief);
-    sea->fan.relief_words = WORDS_HEAD;
-    sea->fan.relief_x = (float)relief->first_x_m;
-    sea->fan.relief_y = (float)relief->first_y_m;
+    sea->trace.objects = (const struct object_record *)sea->words;
+    sea->trace.fan.relief_words = WORDS_HEAD;
+    sea->trace.fan.relief_x = (float)relief->first_x_m;
+    sea->trace.fan.relief_y = (float)relief->first_y_m;
 }
 
 static void sea_clear(struct sea *sea)
@@ -147,12 +143,12 @@ static double reference_distance(const struct sea *sea, const struct line *line,
 static float seabed_at(const struct sea *sea, struct vector3 point, struct vector3 direction,
                        float minimum)
 {
-    return seabed_distance(&sea->fan, objects_of(sea), point, direction, minimum, -1);
+    return seabed_distance(&sea->trace, point, direction, minimum, -1);
 }
 
 static struct vector3 normal_at(const struct sea *sea, struct vector3 hit, struct vector3 direction)
 {
-    return seabed_normal(&sea->fan, objects_of(sea), hit, direction);
+    return seabed_normal(&sea->trace, hit, direction);
 }
 
 static double lowest_between(const struct sea *sea, const struct line *line, double a, double b)
@@ -273,8 +269,7 @@ TEST(test_rays_from_the_surface)
         assert_true(fabsf(dot3(normal, normal) - 1.0f) < 1e-6f);
         const struct vector3 start = along3(hit, normal, 2.0e-5f);
         /* the way straight back is clear */
-        assert_true(is_clear_of_relief(&sea.fan, objects_of(&sea), start, reversed3(direction),
-                                       49.0f, -1) ||
+        assert_true(is_clear_of_relief(&sea.trace, start, reversed3(direction), 49.0f, -1) ||
                     -dot3(normal, direction) < 0.02f);
         const double azimuth = 2.0 * PI * uniform(0.0, 1.0);
         const double up = uniform(-0.3, 1.0); /* also down into the pit */
@@ -354,7 +349,7 @@ TEST(test_level_ground_is_the_plane)
         for (int ray = 0; ray < RAYS; ray++) {
             struct vector3 point, direction;
             fan_ray_from(has_mound || ray % 2 ? 50.0 : 500.0, &point, &direction);
-            const float plane = plane_distance(&sea.fan, point, direction);
+            const float plane = plane_distance(&sea.trace.fan, point, direction);
             const float found = seabed_at(&sea, point, direction, has_mound ? -50.0f : -600.0f);
             const struct vector3 place = along3(point, direction, found);
             if (has_mound && (!is_level_at(&sea, place) || fabsf(place.z) > 1e-5f))

@@ -376,13 +376,12 @@ TEST(test_fan)
     for (size_t r = 0; r < 3; r++)
         for (int i = 0; i < 10000; i++) {
             const double depression = uniform(0.02, 1.4);
-            struct fan_record fan;
-            memset(&fan, 0, sizeof fan);
-            fan.reference_range = (float)ranges[r];
-            fan.cosine_depression = (float)cos(depression);
-            fan.sine_depression = (float)sin(depression);
+            const struct fan_record fan = {.reference_range = (float)ranges[r],
+                                           .cosine_depression = (float)cos(depression),
+                                           .sine_depression = (float)sin(depression)};
+            const struct trace trace = {.fan = fan};
             const float elevation = (float)(uniform(-5.0, 5.0) / ranges[r]);
-            const struct fan_ray ray = fan_ray_at(&fan, NULL, 0.25f, elevation);
+            const struct fan_ray ray = fan_ray_at(&trace, 0.25f, elevation);
             const double range = fan.reference_range;
             const double d_y = fan.cosine_depression, d_z = -fan.sine_depression;
             const double e = elevation;

@@ -494,8 +494,8 @@ static float rays_counted; /* times the rays that there are */
 static void weigh_rays(struct bench *bench, struct chain_trace *trace)
 {
     struct report *report = &bench->report;
-    const device_buffer buffer = trace->launch.buffers[CHAIN_SPHERES];
-    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[CHAIN_RECORD]);
+    const device_buffer buffer = trace->launch.buffers[LAUNCH_SPHERES];
+    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[LAUNCH_CHAINS]);
     float *words = bench_copy_buffer(bench, buffer);
     struct target_record *target = (void *)(words + chains->target_words);
     assert_true(chains->cell_samples > 0 && target->rays > 0.0f);

@@ -69,14 +69,14 @@ CLAIM(each_is_what_it_is_alone)
 /* Makes sampling plain cosine sampling, which leads no ray to a target. */
 static void make_plain(struct bench *bench, struct chain_trace *trace)
 {
-    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[CHAIN_RECORD]);
+    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[LAUNCH_CHAINS]);
     assert_true(chains->groups > 8);
     chains->spheres = 0;
     chains->groups = 0;
     chains->seabed_share = 0.0f;
-    buffer_release(bench->tracer.device, &trace->launch.buffers[CHAIN_RECORD]);
+    buffer_release(bench->tracer.device, &trace->launch.buffers[LAUNCH_CHAINS]);
     assert_int_equal(buffer_create(&bench->report, bench->tracer.device, sizeof *chains, chains,
-                                   &trace->launch.buffers[CHAIN_RECORD]),
+                                   &trace->launch.buffers[LAUNCH_CHAINS]),
                      SONJECT_OK);
     free(chains);
 }

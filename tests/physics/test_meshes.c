@@ -383,7 +383,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     }
     sea_ready(sea);
     assert_int_equal(rough_trace_begin(&trace, &sea->bench->tracer, NULL), SONJECT_OK);
-    bytes = bench_buffer_bytes(sea->bench, trace.launch.buffers[ROUGH_OBJECTS]);
+    bytes = bench_buffer_bytes(sea->bench, trace.launch.buffers[LAUNCH_OBJECTS]);
     rough_trace_end(&trace);
     return bytes;
 }

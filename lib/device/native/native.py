@@ -17,7 +17,10 @@ def arguments_of(text):
 
 def main():
     entry, output = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    kernels = re.findall(r"(?:__kernel|GROUP_KERNEL) void (\w+)\((.*?)\)\n\{", entry.read_text(encoding="utf-8"), re.DOTALL)
+    text = entry.read_text(encoding="utf-8")
+    kernels = re.findall(r"__kernel void (\w+)\((.*?)\)\n\{", text, re.DOTALL)
+    of_trace = re.search(r"#define TRACE_ARGUMENTS(.*?[^\\])\n", (entry.parent / "trace.h").read_text(encoding="utf-8"), re.DOTALL)
+    kernels += [(name, of_trace.group(1).replace("\\", "")) for name in re.findall(r"TRACE_KERNEL\((\w+),", text)]
     lines = ['#include "device/native/entry.h"', f'#include "{entry.name}"', ""]
     for name, arguments in kernels:
         values = ", ".join(f"*({type_name} const *)arguments[{i}].value" for i, type_name in enumerate(arguments_of(arguments)))
