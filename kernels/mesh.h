@@ -180,7 +180,8 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
     hit.triangle = SPLAT_VINT(-1);
     struct mesh_ray_lanes lanes;
     int has_lanes = 0;
-    if (!find_packet_heading(&ray, own_z, &heading)) {
+    const int is_common = find_packet_heading(&ray, own_z, &heading);
+    if (MESH_ALONE > 0 && !is_common) {
         store_mesh_ray(&ray, own_z, &lanes);
         walk_each_ray(mesh, &lanes, 0, lane_bits(MASK_OF(minimum <= maximum)), is_any, &hit);
         return hit;
