@@ -3,8 +3,9 @@
  * object's axes about the middle of the mesh's bounding box.
  *
  * The hierarchy has branches of up to 16 children and leaves of up to 16 triangles, each in up to
- * four groups of four. A packet of rays tests the groups' boxes and then their members. A ray that
- * walks alone tests all 16 at once, one in each lane. */
+ * four groups of four. A packet of rays tests the groups' boxes of a leaf and then their members;
+ * those of a branch are for packets of one ray. A ray that walks alone tests all 16 at once, one in
+ * each lane. */
 #ifndef SONJECT_KERNELS_MESH_RECORDS_H
 #define SONJECT_KERNELS_MESH_RECORDS_H
 

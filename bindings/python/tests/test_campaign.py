@@ -123,36 +123,36 @@ def test_what_did_not_fail_leaves_no_message(campaign, tmp_path):
         assert context._library.sonject_context_message(context._pointer) == b""
 
 
+def in_each_locale(work):
+    """Returns what work(name) returns in a host without and with a decimal comma."""
+    made = []
+    for name in ("C", "de_DE.UTF-8"):
+        try:
+            locale.setlocale(locale.LC_ALL, name)
+        except locale.Error:
+            pytest.skip("no locale with a decimal comma is installed")
+        try:
+            made.append(work(name))
+        finally:
+            locale.setlocale(locale.LC_ALL, "C")
+    return made
+
+
 def test_a_data_set_is_the_same_in_a_host_with_a_decimal_comma(campaign, tmp_path):
     """Records keep why targets were drawn again, and images their grey levels."""
     settings = {"images": 3, "empty": 0, "visible": {"highlight": "90 dB"}, "grey": ["-50.5 dB", "6.5 dB"]}
-    for name in ("C", "de_DE.UTF-8"):
-        try:
-            locale.setlocale(locale.LC_ALL, name)
-        except locale.Error:
-            pytest.skip("no locale with a decimal comma is installed")
-        try:
-            sonject.Campaign(tmp_path / "campaign.yaml", settings).run(tmp_path / name)
-        finally:
-            locale.setlocale(locale.LC_ALL, "C")
-    files = [path.relative_to(tmp_path / name) for path in (tmp_path / name).rglob("*.*") if path.name != "times.json"]
+    in_each_locale(lambda name: sonject.Campaign(tmp_path / "campaign.yaml", settings).run(tmp_path / name))
+    comma = tmp_path / "de_DE.UTF-8"
+    files = [path.relative_to(comma) for path in comma.rglob("*.*") if path.name != "times.json"]
     assert "highlight" in (tmp_path / "C" / "all" / "records" / "00000000.json").read_text().split("because")[1]
     for path in files:
-        assert (tmp_path / name / path).read_bytes() == (tmp_path / "C" / path).read_bytes(), path
+        assert (comma / path).read_bytes() == (tmp_path / "C" / path).read_bytes(), path
 
 
 def test_a_check_is_the_same_in_a_host_with_a_decimal_comma(make_scene):
-    scene, told = make_scene(input={"uniform": {"rows": 60, "columns": 90}, "geometry": GEOMETRY}), []
-    for name in ("C", "de_DE.UTF-8"):
-        try:
-            locale.setlocale(locale.LC_ALL, name)
-        except locale.Error:
-            pytest.skip("no locale with a decimal comma is installed")
-        try:
-            told.append(sonject.check(scene))
-        finally:
-            locale.setlocale(locale.LC_ALL, "C")
-    assert told[0] == told[1] and "m along-track" in told[0]
+    scene = make_scene(input={"uniform": {"rows": 60, "columns": 90}, "geometry": GEOMETRY})
+    point, comma = in_each_locale(lambda name: sonject.check(scene))
+    assert point == comma and "m along-track" in point
 
 
 @pytest.mark.parametrize("name", ["swath.npy", "target.yaml", "rock.obj", "pings.csv", "heights.npy"])
